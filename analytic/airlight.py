@@ -1,0 +1,103 @@
+"""The airlight of a point light in a homogeneous medium: single scattering along one straight piece of a ray."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from analytic.medium import Medium
+from analytic.models import MODELS, AirlightModel
+from analytic.phase import Phase
+
+__all__ = ["MODELS", "AirlightModel", "airlight"]
+
+
+def airlight(
+    h: ArrayLike,
+    x_a: ArrayLike,
+    x_b: ArrayLike,
+    medium: Medium,
+    phase: Phase,
+    intensity: ArrayLike = 1.0,
+    model: str = "quadrature",
+    **options: int,
+) -> NDArray[np.float64]:
+    """Radiance that reaches the eye from the light scattered between x_a and x_b.
+
+    Positions are measured along the ray from the light's projection on it, in viewing direction. The attenuation from
+    the light to the point and from the point to the eye is included.
+
+    Parameters
+    ----------
+    h : array_like, (...)          distance of the light from the ray [scene unit]
+    x_a : array_like, (...)        the eye, where the segment begins [scene unit]
+    x_b : array_like, (...)        where the segment ends, may be inf [scene unit]
+    medium : Medium                scalar or RGB
+    phase : Phase                  phase function, from `analytic.phase`
+    intensity : array_like, (...)  of the light [W / sr]; broadcasts with the result
+    model : str                    a name in `MODELS`
+    **options : int                what the model takes besides: `steps` for "riemann"
+
+    Returns
+    -------
+    ndarray, (...) or (..., 3)  radiance [W / (m^2 sr) for a scene unit of 1 m]; with an RGB medium the channels come
+        last. A segment that contains the light (h = 0, x_a <= 0 <= x_b) is infinitely bright; beside it h = 0 is an
+        ordinary value.
+
+    Raises
+    ------
+    ValueError
+        If h, x_a, x_b or intensity is NaN, h or intensity negative or infinite, x_a infinite, x_b below x_a, the model
+        unknown, or the phase function one that the model does not take.
+    TypeError
+        If medium or phase is not what this package makes, or an option is not the model's.
+
+    Examples
+    --------
+    >>> from analytic import Medium, airlight, phase
+    >>> float(airlight(1.0, -2.0, 3.0, Medium(0.1, 0.2), phase("isotropic")).round(6))
+    0.009531
+
+    Source: Weng 2010, L_m of Eq. 16.
+    """
+    if model not in MODELS:
+        raise ValueError(f"model must be one of {', '.join(sorted(MODELS))}: {model!r}")
+    if not isinstance(medium, Medium):
+        raise TypeError(f"medium must be an analytic.Medium, not {type(medium).__name__}")
+    if not hasattr(phase, "evaluate"):
+        raise TypeError(f"phase must be made by analytic.phase, not be a {type(phase).__name__}")
+    height, start, end = _segment(h, x_a, x_b)
+    power = np.asarray(intensity, dtype=np.float64)
+    if not np.all(np.isfinite(power)) or np.any(power < 0):
+        raise ValueError("intensity must be finite and not negative")
+
+    if medium.sigma_t.ndim:
+        height, start, end = height[..., None], start[..., None], end[..., None]
+    arrays = np.broadcast_arrays(height, start, end, medium.sigma_t)
+    shape = arrays[0].shape
+    height, start, end, sigma_t = (array.ravel() for array in arrays)
+
+    result = np.zeros(height.shape)
+    empty = start == end
+    lamp = ~empty & (height == 0) & (start <= 0) & (end >= 0)
+    plain = ~empty & ~lamp
+    result[lamp] = np.inf
+    result[plain] = MODELS[model].function(height[plain], start[plain], end[plain], sigma_t[plain], phase, **options)
+
+    scale = power * medium.sigma_s
+    with np.errstate(invalid="ignore"):  # no light and no scattering make no airlight, at the lamp neither
+        return np.where(scale > 0, scale * result.reshape(shape), 0.0)
+
+
+def _segment(
+    h: ArrayLike, x_a: ArrayLike, x_b: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """The three lengths as float64 arrays of one shape, once they make sense."""
+    height, start, end = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in (h, x_a, x_b)))
+    if not np.all(np.isfinite(height)) or np.any(height < 0):
+        raise ValueError("h must be finite and not negative")
+    if not np.all(np.isfinite(start)):
+        raise ValueError("x_a must be finite")
+    if not np.all(end >= start):
+        raise ValueError("x_b must not be NaN or below x_a")
+    return height, start, end

@@ -1,0 +1,1 @@
+"""The OpenGL techniques: passes, GLSL and the registry of techniques."""

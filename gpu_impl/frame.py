@@ -1,0 +1,39 @@
+"""What a technique draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gpu_impl.context import GLInfo
+from gpu_impl.techniques import Technique
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One picture, split as Weng 2010, Eq. 14 splits it; float32, row 0 at the top, linear Rec.709.
+
+    Attributes
+    ----------
+    surface : (H, W, 3)        light from surfaces, attenuated on both legs
+    scattering : (H, W, 3)     airlight L_m
+    depth : (H, W)             distance along the pixel's ray to the surface, or to the far plane [scene unit]
+    lit_intervals : (H, W)     pieces that the visibility strategy reported
+    technique : Technique
+    gl : GLInfo
+    milliseconds : float       wall clock of one warm frame, from the first pass to glFinish
+    """
+
+    surface: np.ndarray
+    scattering: np.ndarray
+    depth: np.ndarray
+    lit_intervals: np.ndarray
+    technique: Technique
+    gl: GLInfo
+    milliseconds: float
+
+    @property
+    def composite(self) -> np.ndarray:
+        """Surface and scattering together, (H, W, 3)."""
+        return self.surface + self.scattering

@@ -1,0 +1,131 @@
+"""A scene's triangles on the GPU, and the pass that draws what the eye sees first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gpu_impl.matrices import projection_matrix
+from gpu_impl.shader_source import ShaderSource, compile_program, set_uniforms
+from scenes.model import Camera, Mesh, Scene
+
+
+class MeshBuffers:
+    """Vertex and index buffers of one mesh."""
+
+    def __init__(self, context: Any, mesh: Mesh) -> None:
+        vertices, normals, faces = mesh.vertices, mesh.normals, mesh.faces
+        if normals is None:
+            # a flat face shares its vertices with no other
+            vertices = vertices[faces].reshape(-1, 3)
+            corners = vertices.reshape(-1, 3, 3).astype(np.float64)
+            flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            length = np.linalg.norm(flat, axis=1, keepdims=True)
+            normals = np.repeat(flat / np.where(length > 0, length, 1), 3, axis=0)
+            faces = np.arange(len(vertices), dtype=np.uint32)
+        self._context = context
+        self._positions = context.buffer(np.ascontiguousarray(vertices, np.float32))
+        self._normals = context.buffer(np.ascontiguousarray(normals, np.float32))
+        self._indices = context.buffer(np.ascontiguousarray(faces, np.uint32))
+        self.material = (*mesh.reflectance.tolist(), float(mesh.two_sided))
+
+    def draw(self, program: Any, uniforms: Mapping[str, Any]) -> None:
+        """Draw with the attributes that the program has."""
+        attributes = [(self._positions, "3f", "in_position")]
+        if "in_normal" in program:
+            attributes.append((self._normals, "3f", "in_normal"))
+        set_uniforms(program, uniforms)
+        array = self._context.vertex_array(program, attributes, self._indices)
+        array.render()
+        array.release()
+
+    def release(self) -> None:
+        """Give the buffers back."""
+        for buffer in (self._positions, self._normals, self._indices):
+            buffer.release()
+
+
+class Geometry:
+    """All meshes of a scene on the GPU."""
+
+    def __init__(self, context: Any, scene: Scene) -> None:
+        self.meshes = [MeshBuffers(context, mesh) for mesh in scene.meshes]
+        points = [mesh.vertices for mesh in scene.meshes]
+        # of all vertices, to fit the depth range
+        self.vertices = np.concatenate(points) if points else np.zeros((0, 3), np.float32)
+
+    def release(self) -> None:
+        """Give all buffers back."""
+        for mesh in self.meshes:
+            mesh.release()
+
+
+@dataclass(frozen=True)
+class GBuffer:
+    """What the eye sees first, at full resolution.
+
+    Attributes
+    ----------
+    normal_and_distance : texture RGBA32F   unit normal (0 for none), distance along the pixel's ray [scene unit],
+                                        0 where there is no surface
+    material : texture RGBA32F              reflectance, 1 if two-sided
+    """
+
+    normal_and_distance: Any
+    material: Any
+
+    def release(self) -> None:
+        """Give the textures back."""
+        self.normal_and_distance.release()
+        self.material.release()
+
+
+def camera_uniforms(camera: Camera) -> dict[str, Any]:
+    """Uniforms of camera_ray.glsl."""
+    return {
+        "camera_to_world": tuple(camera.to_world.T.ravel()),
+        "tan_half": (camera.tan_half_x, camera.tan_half_y),
+        "clip_planes": (camera.near, camera.far),
+        "image_size": (camera.width, camera.height),
+    }
+
+
+def render_gbuffer(context: Any, geometry: Geometry, camera: Camera) -> GBuffer:
+    """Rasterise the scene from the eye; the caller releases the textures."""
+    size = (camera.width, camera.height)
+    buffers = GBuffer(context.texture(size, 4, dtype="f4"), context.texture(size, 4, dtype="f4"))
+    depth = context.depth_renderbuffer(size)
+    target = context.framebuffer([buffers.normal_and_distance, buffers.material], depth)
+    target.use()
+    target.clear()
+    context.enable(context.DEPTH_TEST)
+    program = compile_program(context, ShaderSource("geometry.vert.glsl"), ShaderSource("geometry.frag.glsl", {"GREY": 1}))
+    uniforms = camera_uniforms(camera) | {"world_to_clip": tuple(_world_to_clip(camera, geometry).T.ravel())}
+    for mesh in geometry.meshes:
+        mesh.draw(program, uniforms | {"material": mesh.material})
+    context.disable(context.DEPTH_TEST)
+    program.release()
+    target.release()
+    depth.release()
+    return buffers
+
+
+def _world_to_clip(camera: Camera, geometry: Geometry) -> np.ndarray:
+    """World to clip space, with image row 0 at the first row of the target."""
+    # Mitsuba's camera looks along +z with +x to the left; OpenGL's along -z with +x to the right
+    view = np.diag([-1.0, 1.0, -1.0, 1.0]) @ np.linalg.inv(camera.to_world)
+    near, far = _depth_range(camera, -(geometry.vertices @ view[2, :3] + view[2, 3]))
+    projection = projection_matrix(camera.tan_half_x, camera.tan_half_y, near, far)
+    return np.diag([1.0, -1.0, 1.0, 1.0]) @ projection @ view
+
+
+def _depth_range(camera: Camera, depths: np.ndarray) -> tuple[float, float]:
+    """Clip distances as tight as the vertices allow: the depth buffer's precision goes with their ratio."""
+    if depths.size == 0:
+        return camera.near, camera.far
+    near = max(camera.near, float(depths.min()) * 0.999)
+    far = min(camera.far, float(depths.max()) * 1.001)
+    return (near, far) if near < far else (camera.near, camera.far)

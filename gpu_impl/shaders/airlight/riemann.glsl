@@ -1,0 +1,16 @@
+// One point sample at the middle of the piece: what a ray march sums (Nishita 1987; Weng 2010, Eq. 16 as a Riemann sum).
+#include "light.glsl"
+#include "<phase>"
+
+// a sample asks the light for its intensity in its own direction, and so shows the edge of a cone as it falls
+const bool CLIP_TO_CONE = false;
+
+vec3 airlight(Ray ray, Light light, float t0, float dt) {
+    float t = t0 + 0.5 * dt;
+    vec3 point = ray.o + t * ray.d;
+    vec3 to_light = light.position - point;
+    float d2 = max(dot(to_light, to_light), 1e-20), d = sqrt(d2);
+    float cos_theta = dot(-to_light, -ray.d) / d;
+    return light.intensity * falloff(light, point) * sigma_s * phase(cos_theta) * dt / d2
+         * exp(-sigma_t * (t + d));
+}

@@ -1,0 +1,14 @@
+// The ray of a pixel, the same arithmetic as scenes.model.Camera.rays; row 0 is the top of the image.
+#include "contract.glsl"
+
+uniform mat4 camera_to_world;
+uniform vec2 tan_half;      // of the horizontal and vertical field of view
+uniform vec2 clip_planes;   // near, far
+uniform ivec2 image_size;
+
+Ray camera_ray(ivec2 pixel) {
+    vec2 local = (1.0 - (2.0 * vec2(pixel) + 1.0) / vec2(image_size)) * tan_half;
+    float stretch = sqrt(1.0 + dot(local, local));
+    vec3 d = mat3(camera_to_world) * (vec3(local, 1.0) / stretch);
+    return Ray(camera_to_world[3].xyz + d * (clip_planes.x * stretch), d, (clip_planes.y - clip_planes.x) * stretch);
+}

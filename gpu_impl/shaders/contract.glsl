@@ -1,0 +1,32 @@
+// The contract between the three parts of a technique. A technique is
+//     visibility strategy  x  airlight model  x  lattice
+// and each part knows the others only through what stands here.
+
+// Begins on the near plane, as Mitsuba's rays do; t_max is the distance to the surface or to the far plane.
+struct Ray { vec3 o; vec3 d; float t_max; };
+
+// intensity [W/sr]; the angles are half-angles of a spot [rad], pi for a point light.
+struct Light { vec3 position; vec3 direction; vec3 intensity; float beam_width; float cutoff_angle; };
+
+// The medium [1 / scene unit].
+uniform vec3 sigma_s;
+uniform vec3 sigma_t;
+
+// A MODEL defines
+//     const bool CLIP_TO_CONE      true: the driver cuts pieces at the edge of a spot's cone, inside which the model
+//                                  takes the intensity as constant or smooth; false: it samples the intensity itself
+//     vec3 airlight(Ray ray, Light light, float t0, float dt)
+// the radiance that reaches the eye from the lit piece [t0, t0 + dt], the eye leg's transmittance included.
+// dt is passed explicitly because float32 loses it in t1 - t0.
+vec3 airlight(Ray ray, Light light, float t0, float dt);
+// A model that works on one extinction coefficient at a time runs once in grey fog, three times in coloured fog.
+#define PER_CHANNEL(f, ray, light, t0, dt) \
+    (GREY == 1 ? vec3(f(ray, light, t0, dt, sigma_t.x)) : vec3(f(ray, light, t0, dt, sigma_t.x), \
+     f(ray, light, t0, dt, sigma_t.y), f(ray, light, t0, dt, sigma_t.z)))
+
+// A STRATEGY defines
+//     void visibility(Ray ray, Light light)
+// and reports lit pieces, in any order, by calling lit(). w is any real number: 1 for a lit interval, a fraction for
+// filtered visibility, +1 and -1 for shadow-volume faces that are added and subtracted.
+void visibility(Ray ray, Light light);
+void lit(float t0, float dt, float w);

@@ -1,0 +1,10 @@
+uniform mat4 world_to_clip;
+in vec3 in_position;
+in vec3 in_normal;
+out vec3 position;
+out vec3 normal;
+void main() {
+    position = in_position;
+    normal = in_normal;
+    gl_Position = world_to_clip * vec4(in_position, 1.0);
+}

@@ -1,0 +1,113 @@
+"""The registry: every technique is one cell of visibility strategy x airlight model x lattice.
+
+Adding a strategy or a model takes one GLSL file under `shaders/` and one line here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from analytic.phase import Phase
+from scenes.errors import InputError
+
+DOWNSAMPLES = (1, 2, 4, 8)
+MOST_STEPS = 1 << 20
+
+
+@dataclass(frozen=True)
+class AirlightModel:
+    """How much light one lit piece of a ray sends to the eye."""
+
+    source: str
+    what: str
+    phases: tuple[str, ...] | None = None   # the phase functions it takes; None for all
+
+
+@dataclass(frozen=True)
+class Visibility:
+    """Which pieces of a ray are lit."""
+
+    source: str
+    what: str
+
+
+AIRLIGHT_MODELS = {
+    "riemann": AirlightModel("airlight/riemann.glsl", "one point sample a piece (Nishita 1987)"),
+    "weng2010": AirlightModel("airlight/weng2010.glsl", "isotropic closed form, repaired", ("isotropic",)),
+    "quadrature": AirlightModel("airlight/quadrature.glsl", "24-node Gauss-Legendre under a rational map"),
+}
+
+VISIBILITIES = {
+    "uniform_march": Visibility("visibility/uniform_march.glsl", "equal steps over the whole ray"),
+    "lit_intervals": Visibility("visibility/lit_intervals.glsl", "samples merged to lit intervals (Algorithm 4.1)"),
+}
+
+
+@dataclass(frozen=True)
+class Technique:
+    """One cell of the product, with its settings.
+
+    Attributes
+    ----------
+    name : str
+    visibility, airlight : str    keys of `VISIBILITIES` and `AIRLIGHT_MODELS`
+    steps : int                   samples of the visibility along a ray
+    shadow_map : int              texels on a side of each shadow-map tile
+    downsample : int              every how many pixels fog is evaluated, in x and in y
+    """
+
+    name: str
+    visibility: str
+    airlight: str
+    steps: int = 64
+    shadow_map: int = 1024
+    downsample: int = 1
+
+    def check(self) -> None:
+        """Raise InputError where a part is unknown or a setting cannot be used."""
+        _choose("visibility", self.visibility, VISIBILITIES)
+        _choose("airlight model", self.airlight, AIRLIGHT_MODELS)
+        if not 1 <= self.steps <= MOST_STEPS:
+            raise InputError(f"steps is {self.steps}; use 1 to {MOST_STEPS}.")
+        if not 1 <= self.shadow_map <= 16384:
+            raise InputError(f"shadow_map is {self.shadow_map}; use 1 to 16384 texels.")
+        if self.downsample not in DOWNSAMPLES:
+            raise InputError(f"downsample is {self.downsample}; use {', '.join(map(str, DOWNSAMPLES))}.")
+
+    def check_phase(self, phase: Phase) -> None:
+        """Raise InputError where the airlight model cannot take the scene's phase function."""
+        allowed = AIRLIGHT_MODELS[self.airlight].phases
+        if allowed is not None and phase.name not in allowed:
+            raise InputError(
+                f"The airlight model {self.airlight} takes the phase function {' or '.join(allowed)}, and the scene has "
+                f"{phase.name}: use --airlight quadrature, or set the scene's phase function."
+            )
+
+
+TECHNIQUES = {
+    technique.name: technique
+    for technique in (
+        Technique("Nishita1987", "uniform_march", "riemann"),
+        Technique("Weng2010", "lit_intervals", "weng2010", steps=128),
+        Technique("LitIntervalsQuadrature", "lit_intervals", "quadrature", steps=128),
+    )
+}
+
+
+def find_technique(name: str, **settings: object) -> Technique:
+    """Look a technique up and change those of its settings that are not None.
+
+    Raises
+    ------
+    InputError
+        The name or a setting is not known.
+    """
+    _choose("technique", name, TECHNIQUES)
+    technique = replace(TECHNIQUES[name], **{key: value for key, value in settings.items() if value is not None})
+    technique.check()
+    return technique
+
+
+def _choose(what: str, name: str, known: dict) -> None:
+    if name not in known:
+        raise InputError(f"There is no {what} '{name}'; the known ones are {', '.join(known)}.")

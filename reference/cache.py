@@ -1,0 +1,77 @@
+"""References kept under the user's cache folder, addressed by everything that decides them."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import platformdirs
+
+from scenes.errors import InputError
+
+Recipe = dict[str, Any]
+Arrays = dict[str, np.ndarray]
+
+
+def folder() -> Path:
+    """Where the entries are."""
+    return Path(platformdirs.user_cache_dir("airlight")) / "references"
+
+
+def key(recipe: Recipe) -> str:
+    """Hash of a recipe."""
+    return hashlib.sha256(json.dumps(recipe, sort_keys=True).encode()).hexdigest()
+
+
+def load(recipe: Recipe) -> tuple[Arrays, Recipe] | None:
+    """Return an entry's arrays and its record, or None.
+
+    A damaged entry is set aside (renamed) and counts as missing. npz is a zip: each array carries a checksum.
+    """
+    path = _path(recipe)
+    if not path.is_file():
+        return None
+    try:
+        with np.load(path, allow_pickle=False) as entry:
+            arrays = {name: entry[name] for name in entry.files if name != "record"}
+            record = json.loads(str(entry["record"]))
+        if record["recipe"] != recipe:
+            raise ValueError("the recipe is another one")
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        path.replace(path.with_suffix(".damaged"))
+        return None
+    return arrays, record
+
+
+def store(recipe: Recipe, arrays: Arrays, record: Recipe) -> None:
+    """Write an entry beside its place and rename it, so that a half-written one is never read.
+
+    Raises
+    ------
+    InputError
+        The cache folder cannot be written.
+    """
+    path = _path(recipe)
+    temporary = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as file:
+            temporary = Path(file.name)
+            np.savez(file, record=np.array(json.dumps(record | {"recipe": recipe})), **arrays)  # type: ignore[arg-type]
+        os.replace(temporary, path)
+    except OSError as error:
+        if temporary:
+            temporary.unlink(missing_ok=True)
+        raise InputError(
+            f"The reference cannot be kept in {path.parent} ({error.strerror}): make it writable, or set XDG_CACHE_HOME."
+        ) from None
+
+
+def _path(recipe: Recipe) -> Path:
+    return folder() / f"{key(recipe)}.npz"

@@ -1,0 +1,113 @@
+"""The reference of a scene: from the cache, or estimated once and kept there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, fields
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from reference import cache
+from reference.convergence import Estimate, Goal, Progress, converge
+from reference.estimators import Estimator, Volpath, default_estimator
+from reference.integrator import mi
+from scenes.model import Scene
+
+_ARRAYS = ("mean", "standard_error", "image_mean", "image_error")
+
+
+@dataclass(frozen=True)
+class Reference:
+    """An estimate with the recipe that made it.
+
+    Attributes
+    ----------
+    estimate : Estimate
+    recipe : dict          all that decides it: scene, estimator and version, variant, goal, Mitsuba's version
+    pixel_filter : str     "centre" or "box"
+    from_cache : bool
+    """
+
+    estimate: Estimate
+    recipe: dict[str, Any]
+    pixel_filter: str
+    from_cache: bool
+
+    @property
+    def surface(self) -> np.ndarray:
+        """Light from surfaces, (H, W, 3)."""
+        return self.estimate.mean["surface"]
+
+    @property
+    def scattering(self) -> np.ndarray:
+        """Airlight, (H, W, 3)."""
+        return self.estimate.mean["scattering"]
+
+    @property
+    def composite(self) -> np.ndarray:
+        """Both together, (H, W, 3)."""
+        return self.surface + self.scattering
+
+    def standard_error(self, layer: str) -> np.ndarray:
+        """Standard error of "surface", "scattering" or "composite", (H, W, 3)."""
+        if layer == "composite":
+            return np.hypot(self.standard_error("surface"), self.standard_error("scattering"))
+        return self.estimate.standard_error[layer]
+
+
+def estimate_reference(
+    scene: Scene, goal: Goal, report: Callable[[Progress], None] | None = None, use_cache: bool = True
+) -> Reference:
+    """Take the scene's reference from the cache, or estimate it and keep it there.
+
+    Parameters
+    ----------
+    report : called after each pass, for a progress bar
+
+    Raises
+    ------
+    InputError
+        The estimate is zero everywhere or not finite, or the cache cannot be written.
+    """
+    estimator = default_estimator(scene)
+    recipe = _recipe(scene, estimator, goal)
+    if use_cache and (entry := cache.load(recipe)):
+        return Reference(_unpack(*entry), recipe, estimator.pixel_filter, from_cache=True)
+    estimate = converge(estimator, goal, report)
+    if use_cache:
+        cache.store(recipe, *_pack(estimate))
+    return Reference(estimate, recipe, estimator.pixel_filter, from_cache=False)
+
+
+def estimate_volpath(scene: Scene, goal: Goal, report: Callable[[Progress], None] | None = None) -> Estimate:
+    """Estimate the same scene by Mitsuba's own `volpath`, as a check; never cached, so that it is done each time."""
+    return converge(Volpath(scene), goal, report)
+
+
+def _recipe(scene: Scene, estimator: Estimator, goal: Goal) -> dict[str, Any]:
+    return {
+        "scene": scene.digest,
+        "size": [scene.camera.width, scene.camera.height],
+        "estimator": estimator.name,
+        "estimator_version": estimator.version,
+        "samples_per_pass": estimator.samples_per_pass,
+        "variant": mi.variant(),
+        "mitsuba": version("mitsuba"),
+        "goal": asdict(goal),
+    }
+
+
+def _pack(estimate: Estimate) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    arrays = {f"{kind}.{layer}": image for kind in _ARRAYS for layer, image in getattr(estimate, kind).items()}
+    return arrays, {field.name: getattr(estimate, field.name) for field in fields(Estimate) if field.name not in _ARRAYS}
+
+
+def _unpack(arrays: dict[str, np.ndarray], record: dict[str, Any]) -> Estimate:
+    layers: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _ARRAYS}
+    for name, image in arrays.items():
+        kind, layer = name.split(".")
+        layers[kind][layer] = image
+    numbers = {field.name: record[field.name] for field in fields(Estimate) if field.name not in _ARRAYS}
+    return Estimate(**layers, **numbers)  # type: ignore[arg-type]

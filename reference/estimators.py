@@ -1,0 +1,210 @@
+"""Estimators of the truth: each gives independent passes over the image, whose spread is its error bar."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.integrator import mi
+from reference.mitsuba_scene import instantiate
+from scenes.model import Scene
+
+# isort: split
+import drjit as dr  # after the integrator, which chose Dr.Jit's LLVM
+
+Image = NDArray[np.float64]
+# one wavefront holds at most this many samples, which bounds its memory to a few hundred MB
+WAVEFRONT = 1 << 22
+
+
+class Estimator(Protocol):
+    """What convergence needs of an estimator.
+
+    Attributes
+    ----------
+    name : str
+    version : int              raised when its results change, so that cached ones are not taken for new ones
+    samples_per_pass : int     per pixel
+    pixel_filter : str         "centre" for rays through pixel centres, "box" for averages over pixels
+    layers : tuple of str      what a pass estimates
+    """
+
+    name: str
+    version: int
+    samples_per_pass: int
+    pixel_filter: str
+    layers: tuple[str, ...]
+
+    def fixed(self) -> dict[str, Image]:
+        """Layers that need no sampling, (H, W, 3) each."""
+
+    def one_pass(self, seed: int) -> dict[str, Image]:
+        """One independent estimate of each layer, (H, W, 3)."""
+
+
+class PixelCentres:
+    """Rays through pixel centres, in wavefronts of bounded size."""
+
+    def __init__(self, scene: Scene, sampler: str, samples_per_pass: int) -> None:
+        self.mitsuba = instantiate(scene)
+        self.shape = (scene.camera.height, scene.camera.width)
+        self.samples_per_pass = samples_per_pass
+        self.sampler = mi.load_dict({"type": sampler, "sample_count": samples_per_pass})
+        self.sampler.set_samples_per_wavefront(samples_per_pass)
+
+    def rays(self, pixel: Any) -> Any:
+        """Mitsuba's own rays through the centres of pixels given by their index in row order."""
+        height, width = self.shape
+        position = mi.Point2f((pixel % width + 0.5) / width, (pixel // width + 0.5) / height)
+        return self.mitsuba.sensor.sample_ray(0.0, 0.0, position, mi.Point2f(0.5))[0]
+
+    def average(self, seed: int, radiance: Any) -> Image:
+        """Average `radiance(ray)` over the samples of each pixel, tile by tile."""
+        pixels = self.shape[0] * self.shape[1]
+        tile = max(1, WAVEFRONT // self.samples_per_pass)
+        parts = []
+        for number, first in enumerate(range(0, pixels, tile)):
+            count = min(tile, pixels - first) * self.samples_per_pass
+            # a seed of its own for each tile of each pass
+            self.sampler.seed(seed * (1 + pixels // tile) + number, count)
+            index = dr.arange(mi.UInt32, count) // self.samples_per_pass + first
+            value = radiance(self.rays(index))
+            mean = dr.block_sum(value, self.samples_per_pass) / self.samples_per_pass
+            parts.append(np.array(mean, dtype=np.float64).T)
+        return np.concatenate(parts).reshape(*self.shape, 3)
+
+
+class Equiangular(PixelCentres):
+    """The main estimator: the integrator `single_scattering` with stratified distances."""
+
+    name = "equiangular"
+    version = 1
+    pixel_filter = "centre"
+    layers = ("scattering",)
+
+    def __init__(self, scene: Scene) -> None:
+        # strata within a pass: 64 in one pass have an eighth of the error of 8 passes of 8 where the integrand is smooth
+        super().__init__(scene, "stratified", samples_per_pass=64)
+        self.integrator = mi.load_dict({"type": "single_scattering"})
+
+    def fixed(self) -> dict[str, Image]:
+        """Direct light on surfaces: the lights have no extent, so one ray a pixel is exact."""
+        ray = self.rays(dr.arange(mi.UInt32, self.shape[0] * self.shape[1]))
+        si = self.mitsuba.scene.ray_intersect(ray)
+        surface = self.integrator.surface(self.mitsuba.scene, ray, si, self.mitsuba.medium)
+        return {"surface": np.array(surface, dtype=np.float64).T.reshape(*self.shape, 3)}
+
+    def one_pass(self, seed: int) -> dict[str, Image]:
+        """Airlight along each ray."""
+        mitsuba_scene, medium = self.mitsuba.scene, self.mitsuba.medium
+
+        def airlight(ray: Any) -> Any:
+            end = dr.minimum(mitsuba_scene.ray_intersect_preliminary(ray).t, ray.maxt)
+            return self.integrator.scattering(mitsuba_scene, self.sampler, ray, end, medium)
+
+        return {"scattering": self.average(seed, airlight)}
+
+
+class Volpath(PixelCentres):
+    """Mitsuba's own `volpath`, cut off after one scattering event: the independent check, of the composite only."""
+
+    name = "volpath"
+    version = 1
+    pixel_filter = "centre"
+    layers = ("composite",)
+
+    def __init__(self, scene: Scene) -> None:
+        super().__init__(scene, "independent", samples_per_pass=64)
+        self.integrator = mi.load_dict({"type": "volpath", "max_depth": 2})
+
+    def fixed(self) -> dict[str, Image]:
+        """Nothing: every sample takes its own path."""
+        return {}
+
+    def one_pass(self, seed: int) -> dict[str, Image]:
+        """Radiance along each ray."""
+
+        def radiance(ray: Any) -> Any:
+            # without the medium it would render without fog, and say nothing
+            return self.integrator.sample(self.mitsuba.scene, self.sampler, ray, self.mitsuba.medium)[0]
+
+        return {"composite": self.average(seed, radiance)}
+
+
+class FilmVolpath:
+    """C++ `volpath` through Mitsuba's film, for `scalar_rgb`, in which Python integrators are a hundred times slower.
+
+    A film samples the whole pixel: the averages are over pixels, not at their centres. The layers come from the same
+    scene with black surfaces and from the same scene with a medium that only absorbs.
+    """
+
+    name = "film_volpath"
+    version = 1
+    pixel_filter = "box"
+    layers = ("scattering", "surface")
+
+    def __init__(self, scene: Scene) -> None:
+        self.samples_per_pass = 32
+        self._scenes = {layer: instantiate(scene).scene for layer in self.layers}
+        _set_all(self._scenes["scattering"], ".reflectance.value", 0.0)
+        _set_all(self._scenes["surface"], ".albedo.value.value", 0.0)
+        self._integrator = mi.load_dict({"type": "volpath", "max_depth": 2})
+        self._sensors = {layer: _box_sensor(scene, made) for layer, made in self._scenes.items()}
+
+    def fixed(self) -> dict[str, Image]:
+        """Nothing: both layers are sampled."""
+        return {}
+
+    def one_pass(self, seed: int) -> dict[str, Image]:
+        """Both layers, each from seeds of its own."""
+        return {
+            layer: np.array(
+                mi.render(
+                    self._scenes[layer],
+                    sensor=self._sensors[layer],
+                    integrator=self._integrator,
+                    seed=2 * seed + number,
+                    spp=self.samples_per_pass,
+                ),
+                dtype=np.float64,
+            )[..., :3]
+            for number, layer in enumerate(self.layers)
+        }
+
+
+def default_estimator(scene: Scene) -> Estimator:
+    """Choose the best estimator for the variant that works on this machine."""
+    return FilmVolpath(scene) if mi.variant() == "scalar_rgb" else Equiangular(scene)
+
+
+def _set_all(mitsuba_scene: Any, ending: str, value: float) -> None:
+    parameters = mi.traverse(mitsuba_scene)
+    for key in parameters.keys():  # noqa: SIM118 - Mitsuba's map has no iterator of its own
+        if key.endswith(ending):
+            parameters[key] = type(parameters[key])(value)
+    parameters.update()
+
+
+def _box_sensor(scene: Scene, mitsuba_scene: Any) -> Any:
+    """Build the scene's camera with a film that keeps float32 and reconstructs nothing."""
+    camera = scene.camera
+    return mi.load_dict(
+        {
+            "type": "perspective",
+            "to_world": mi.ScalarTransform4f(camera.to_world),
+            "fov": 2 * np.degrees(np.arctan(camera.tan_half_x)),
+            "near_clip": camera.near,
+            "far_clip": camera.far,
+            "medium": mitsuba_scene.sensors()[0].get_medium(),
+            "film": {
+                "type": "hdrfilm",
+                "width": camera.width,
+                "height": camera.height,
+                "component_format": "float32",
+                "pixel_format": "rgb",
+                "rfilter": {"type": "box"},
+            },
+        }
+    )

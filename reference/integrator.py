@@ -1,0 +1,163 @@
+"""A Mitsuba integrator for single scattering in a homogeneous medium that fills space.
+
+Importing this module loads Mitsuba and registers the plugin `single_scattering`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from scenes.errors import InputError
+from scenes.mitsuba_setup import mitsuba
+
+# Dr.Jit settles on an LLVM library when it is imported, so the choice comes first
+mi = mitsuba()
+import drjit as dr  # noqa: E402
+
+
+class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined, misc]
+    r"""Single scattering by equiangular sampling (:monosp:`single_scattering`).
+
+    .. pluginparameters::
+
+     * - (none)
+       - The integrator has no parameters: it takes one distance sample per light and ray, as many as the sampler gives.
+
+    The radiance of a ray is the sum of
+
+    - `surface`: light that one diffuse bounce sends to the eye, attenuated on both legs; deterministic, since the
+      lights have no extent;
+    - `scattering`: light that the fog scatters once. The distance is sampled in proportion to 1 / d^2, d the distance
+      to the light (Kulla and Fajardo 2012, section 4), which leaves no singularity to the estimator; transmittance is
+      analytic and visibility a shadow ray. With the sampler `stratified` the distances of a pixel are stratified.
+
+    Point and spot lights are sampled, all of them for each ray. The sensor needs the medium, as Mitsuba's own
+    integrators need it. AOVs hold the two parts.
+    """
+
+    def sample(
+        self, scene: Any, sampler: Any, ray: Any, medium: Any = None, active: Any = True
+    ) -> tuple[Any, Any, list[Any]]:
+        """Estimate the radiance along `ray`; the interface of every Mitsuba integrator."""
+        si = scene.ray_intersect(ray, active)
+        surface = self.surface(scene, ray, si, medium, active)
+        scattering = self.scattering(scene, sampler, ray, dr.minimum(si.t, ray.maxt), medium, active)
+        aovs = [part[channel] for part in (surface, scattering) for channel in range(3)]
+        return surface + scattering, active & si.is_valid(), aovs
+
+    def aov_names(self) -> list[str]:
+        """Names of the AOVs, in the order in which `sample` gives them."""
+        return [f"{part}.{channel}" for part in ("surface", "scattering") for channel in "RGB"]
+
+    def surface(self, scene: Any, ray: Any, si: Any, medium: Any, active: Any = True) -> Any:
+        """Direct light on the surface that the ray hits, as it reaches the eye.
+
+        Parameters
+        ----------
+        ray : Ray3f
+        si : SurfaceInteraction3f    where `ray` hits
+        medium : Medium
+
+        Returns
+        -------
+        radiance : Spectrum
+        """
+        radiance = mi.Spectrum(0.0)
+        hit = active & si.is_valid()
+        bsdf = si.bsdf(ray)
+        for emitter in delta_emitters(scene):
+            ds, weight = emitter.sample_direction(si, mi.Point2f(0.5), hit)
+            lit = hit & ~scene.ray_test(si.spawn_ray_to(ds.p), hit)
+            value = bsdf.eval(mi.BSDFContext(), si, si.to_local(ds.d), lit)
+            radiance[lit] += value * weight * self._transmittance(medium, ray, si.t + ds.dist)
+        return radiance
+
+    def scattering(self, scene: Any, sampler: Any, ray: Any, t_max: Any, medium: Any, active: Any = True) -> Any:
+        """Airlight of one distance sample per light.
+
+        Parameters
+        ----------
+        sampler : Sampler    one number is taken per light
+        ray : Ray3f
+        t_max : Float        where the ray ends [scene unit]
+        medium : Medium
+
+        Returns
+        -------
+        radiance : Spectrum
+        """
+        radiance = mi.Spectrum(0.0)
+        for emitter in delta_emitters(scene):
+            t, inverse_pdf = equiangular(ray, t_max, position_of(emitter, ray), sampler.next_1d(active))
+            mei = self._interaction(medium, ray, t)
+            ds, weight = emitter.sample_direction(mei, mi.Point2f(0.5), active)
+            lit = active & ~scene.ray_test(mei.spawn_ray_to(ds.p), active)
+            phase, _ = medium.phase_function().eval_pdf(mi.PhaseFunctionContext(None), mei, ds.d, lit)
+            sigma_s, _, _ = medium.get_scattering_coefficients(mei, lit)
+            through = self._transmittance(medium, ray, t + ds.dist)
+            radiance[lit] += sigma_s * phase * weight * through * inverse_pdf
+        return radiance
+
+    @staticmethod
+    def _interaction(medium: Any, ray: Any, t: Any) -> Any:
+        mei = dr.zeros(mi.MediumInteraction3f)
+        mei.t = t
+        mei.p = ray(t)
+        mei.wi = -ray.d
+        mei.sh_frame = mi.Frame3f(mei.wi)
+        mei.time = ray.time
+        mei.wavelengths = ray.wavelengths
+        mei.medium = mi.MediumPtr(medium)
+        return mei
+
+    def _transmittance(self, medium: Any, ray: Any, distance: Any) -> Any:
+        _, _, sigma_t = medium.get_scattering_coefficients(self._interaction(medium, ray, mi.Float(0.0)))
+        return dr.exp(-sigma_t * distance)
+
+    def to_string(self) -> str:
+        """Name the plugin."""
+        return "SingleScattering[]"
+
+
+def delta_emitters(scene: Any) -> list[Any]:
+    """Return the scene's emitters, each of which must be a point.
+
+    Raises
+    ------
+    InputError
+        A light has an extent, or none is there.
+    """
+    emitters = scene.emitters()
+    if not emitters:
+        raise InputError("The scene has no light.")
+    for emitter in emitters:
+        if not mi.has_flag(emitter.flags(), mi.EmitterFlags.DeltaPosition):
+            raise InputError(f"single_scattering samples point and spot lights, and the scene has: {emitter}.")
+    return emitters
+
+
+def position_of(emitter: Any, ray: Any) -> Any:
+    """Where a point-like emitter is, Point3f."""
+    anywhere = dr.zeros(mi.Interaction3f)
+    anywhere.p = ray.o
+    return emitter.sample_direction(anywhere, mi.Point2f(0.5), True)[0].p
+
+
+def equiangular(ray: Any, t_max: Any, position: Any, u: Any) -> tuple[Any, Any]:
+    """Sample a distance on [0, t_max] with density proportional to 1 / d^2 (Kulla and Fajardo 2012, section 4).
+
+    Returns
+    -------
+    t : Float              [scene unit]
+    inverse_pdf : Float    [scene unit]
+    """
+    to_light = position - ray.o
+    t_h = dr.dot(to_light, ray.d)
+    h2 = dr.maximum(dr.squared_norm(dr.cross(to_light, ray.d)), 1e-20)
+    h = dr.sqrt(h2)
+    theta_a, theta_b = dr.atan2(-t_h, h), dr.atan2(t_max - t_h, h)
+    t = dr.clip(t_h + h * dr.tan(dr.lerp(theta_a, theta_b, u)), 0, t_max)
+    return t, (theta_b - theta_a) * (h2 + dr.square(t - t_h)) / h
+
+
+mi.register_integrator("single_scattering", SingleScattering)

@@ -1,0 +1,5 @@
+"""Scenes: Mitsuba 3 XML files, and the loader that both renderers share."""
+
+from scenes.errors import InputError
+
+__all__ = ["InputError"]

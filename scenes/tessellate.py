@@ -1,0 +1,121 @@
+"""Mitsuba's analytic shapes as triangles with exact vertex normals, in the shape's local space.
+
+Chord error, the largest distance between a triangle and the surface it stands for, is under 1e-4 of the radius for
+every round shape; the values below are those measured in tests/scenes/test_tessellate.py.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenes.errors import InputError
+from scenes.triangles import Triangles
+
+SIDES = 256  # of a circle: chord error 1 - cos(pi / 256) = 7.5e-5 of the radius
+SUBDIVISIONS = 6  # of the icosahedron: 81,920 triangles, chord error 7.1e-5 of the radius
+
+
+@lru_cache(maxsize=1)
+def sphere() -> Triangles:
+    """Unit sphere around the origin, normals outward."""
+    from trimesh.creation import icosphere  # slow to import, and most scenes have no sphere
+
+    ball = icosphere(subdivisions=SUBDIVISIONS)
+    vertices = _frozen(ball.vertices)
+    return Triangles(vertices, _frozen_faces(ball.faces), vertices)
+
+
+@lru_cache(maxsize=1)
+def rectangle() -> Triangles:
+    """[-1, 1]^2 in the xy plane, normal +z, texture coordinates (x + 1) / 2 and (y + 1) / 2."""
+    vertices = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    return Triangles(
+        _frozen(vertices),
+        _frozen_faces([[0, 1, 2], [2, 3, 0]]),
+        _frozen([[0, 0, 1]] * 4),
+        _frozen((vertices[:, :2] + 1) / 2),
+    )
+
+
+@lru_cache(maxsize=1)
+def cube() -> Triangles:
+    """[-1, 1]^3: six flat sides of four vertices each, normals outward."""
+    vertices: list[NDArray[np.float64]] = []
+    normals: list[NDArray[np.float64]] = []
+    faces: list[list[int]] = []
+    for axis in range(3):
+        for side in (-1.0, 1.0):
+            normal = np.roll([side, 0.0, 0.0], axis)
+            u = np.roll([0.0, 1.0, 0.0], axis)
+            v = np.cross(normal, u)
+            first = len(vertices)
+            vertices += [normal - u - v, normal + u - v, normal + u + v, normal - u + v]
+            normals += [normal] * 4
+            faces += [[first, first + 1, first + 2], [first + 2, first + 3, first]]
+    return Triangles(_frozen(vertices), _frozen_faces(faces), _frozen(normals))
+
+
+@lru_cache(maxsize=1)
+def disk() -> Triangles:
+    """Unit disk in the xy plane, normal +z."""
+    rim = _circle()
+    vertices = np.vstack([[[0.0, 0.0, 0.0]], np.column_stack([rim, np.zeros(SIDES)])])
+    here = np.arange(SIDES)
+    faces = np.column_stack([np.zeros_like(here), here + 1, (here + 1) % SIDES + 1])
+    return Triangles(_frozen(vertices), _frozen_faces(faces), _frozen([[0, 0, 1]] * len(vertices)))
+
+
+def cylinder(p0: NDArray[np.floating], p1: NDArray[np.floating], radius: float) -> Triangles:
+    """Open tube (no caps, as Mitsuba's), normals outward.
+
+    Parameters
+    ----------
+    p0, p1 : (3,) float   ends of the axis [scene unit]
+    radius : float        of the tube [scene unit]
+
+    Raises
+    ------
+    InputError   the tube has no length or no radius
+    """
+    start, end = np.asarray(p0, np.float64), np.asarray(p1, np.float64)
+    length = float(np.linalg.norm(end - start))
+    if not (np.isfinite(length) and length > 0.0 and np.isfinite(radius) and radius > 0.0):
+        raise InputError(
+            f"A cylinder from {start.tolist()} to {end.tolist()} of radius {radius} has no surface; "
+            "give it two different ends and a positive radius in the scene."
+        )
+    axis = (end - start) / length
+    # any vector that is far from parallel to the axis spans the plane across it
+    u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    u /= np.linalg.norm(u)
+    v = np.cross(axis, u)
+    rim = _circle()
+    outward = rim[:, :1] * u + rim[:, 1:] * v
+    vertices = np.vstack([start + radius * outward, end + radius * outward])
+    here = np.arange(SIDES)
+    there = (here + 1) % SIDES
+    faces = np.vstack(
+        [np.column_stack([here, there, there + SIDES]), np.column_stack([there + SIDES, here + SIDES, here])]
+    )
+    return Triangles(_frozen(vertices), _frozen_faces(faces), _frozen(np.vstack([outward, outward])))
+
+
+def _circle() -> NDArray[np.float64]:
+    angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
+    return np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _frozen(values: object) -> NDArray[np.float32]:
+    """Read-only, since a shape is made once and shared by every scene."""
+    array = np.array(values, np.float32)
+    array.setflags(write=False)
+    return array
+
+
+def _frozen_faces(values: object) -> NDArray[np.uint32]:
+    array = np.array(values, np.uint32)
+    array.setflags(write=False)
+    return array
