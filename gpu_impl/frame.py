@@ -22,7 +22,6 @@ class Frame:
     lit_intervals : (H, W)     pieces that the visibility strategy reported
     technique : Technique
     gl : GLInfo
-    milliseconds : float       wall clock of one warm frame, from the first pass to glFinish
     """
 
     surface: np.ndarray
@@ -31,7 +30,6 @@ class Frame:
     lit_intervals: np.ndarray
     technique: Technique
     gl: GLInfo
-    milliseconds: float
 
     @property
     def composite(self) -> np.ndarray:

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from gpu_impl.device import Device
 from gpu_impl.matrices import projection_matrix
-from gpu_impl.shader_source import ShaderSource, compile_program, set_uniforms
+from gpu_impl.shader_source import set_uniforms
 from scenes.model import Camera, Mesh, Scene
 
 
@@ -51,8 +52,8 @@ class MeshBuffers:
 class Geometry:
     """All meshes of a scene on the GPU."""
 
-    def __init__(self, context: Any, scene: Scene) -> None:
-        self.meshes = [MeshBuffers(context, mesh) for mesh in scene.meshes]
+    def __init__(self, device: Device, scene: Scene) -> None:
+        self.meshes = [MeshBuffers(device.context, mesh) for mesh in scene.meshes]
         points = [mesh.vertices for mesh in scene.meshes]
         # of all vertices, to fit the depth range
         self.vertices = np.concatenate(points) if points else np.zeros((0, 3), np.float32)
@@ -77,37 +78,37 @@ class GBuffer:
     normal_and_distance: Any
     material: Any
 
-    def release(self) -> None:
-        """Give the textures back."""
-        self.normal_and_distance.release()
-        self.material.release()
+    def bind(self, first_unit: int) -> dict[str, int]:
+        """Bind both textures and give their uniforms."""
+        self.normal_and_distance.use(first_unit)
+        self.material.use(first_unit + 1)
+        return {"normal_and_distance": first_unit, "surface_material": first_unit + 1}
 
 
 def camera_uniforms(camera: Camera) -> dict[str, Any]:
     """Uniforms of camera_ray.glsl."""
     return {
-        "camera_to_world": tuple(camera.to_world.T.ravel()),
+        "camera_to_world": camera.to_world,
         "tan_half": (camera.tan_half_x, camera.tan_half_y),
         "clip_planes": (camera.near, camera.far),
         "image_size": (camera.width, camera.height),
     }
 
 
-def render_gbuffer(context: Any, geometry: Geometry, camera: Camera) -> GBuffer:
+def render_gbuffer(device: Device, geometry: Geometry, camera: Camera) -> GBuffer:
     """Rasterise the scene from the eye; the caller releases the textures."""
-    size = (camera.width, camera.height)
-    buffers = GBuffer(context.texture(size, 4, dtype="f4"), context.texture(size, 4, dtype="f4"))
+    context, size = device.context, (camera.width, camera.height)
+    buffers = GBuffer(device.texture(size, 4), device.texture(size, 4))
     depth = context.depth_renderbuffer(size)
     target = context.framebuffer([buffers.normal_and_distance, buffers.material], depth)
     target.use()
     target.clear()
     context.enable(context.DEPTH_TEST)
-    program = compile_program(context, ShaderSource("geometry.vert.glsl"), ShaderSource("geometry.frag.glsl", {"GREY": 1}))
-    uniforms = camera_uniforms(camera) | {"world_to_clip": tuple(_world_to_clip(camera, geometry).T.ravel())}
+    program = device.program("geometry.frag.glsl", vertex="geometry.vert.glsl")
+    uniforms = camera_uniforms(camera) | {"world_to_clip": _world_to_clip(camera, geometry)}
     for mesh in geometry.meshes:
         mesh.draw(program, uniforms | {"material": mesh.material})
     context.disable(context.DEPTH_TEST)
-    program.release()
     target.release()
     depth.release()
     return buffers

@@ -7,18 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from gpu_impl.context import gl_info, shared_context
+from gpu_impl.device import Device
 from gpu_impl.frame import Frame
-from gpu_impl.geometry import GBuffer, Geometry, camera_uniforms, render_gbuffer
-from gpu_impl.quadrature_nodes import gauss_legendre_glsl
-from gpu_impl.shader_source import ShaderSource, compile_program, set_uniforms
-from gpu_impl.shadow_map import ShadowMap, render_shadow_map, tile_count
-from gpu_impl.techniques import AIRLIGHT_MODELS, VISIBILITIES, Technique
+from gpu_impl.geometry import Geometry, render_gbuffer
+from gpu_impl.scattering import add_scattering
+from gpu_impl.shadow_map import render_shadow_map
+from gpu_impl.surface import add_surface
+from gpu_impl.techniques import Technique
+from gpu_impl.upsample import upsample
 from scenes.errors import InputError
-from scenes.model import Light, Scene
-
-QUADRATURE_NODES = 24
-VERTEX = ShaderSource("fullscreen.vert.glsl")
+from scenes.model import Scene
 
 
 class Renderer:
@@ -29,12 +27,11 @@ class Renderer:
 
     def __init__(self, scene: Scene, context: Any | None = None) -> None:
         self.scene = scene
-        self.context = context or shared_context()
-        widest = self.context.info["GL_MAX_TEXTURE_SIZE"]
-        if max(scene.camera.width, scene.camera.height) > widest:
-            raise InputError(f"The image is larger than this OpenGL allows ({widest} pixels on a side).")
-        self._geometry = Geometry(self.context, scene)
-        self._programs: dict[tuple, Any] = {}
+        self.device = Device(context)
+        if max(scene.camera.width, scene.camera.height) > self.device.largest_texture:
+            limit = self.device.largest_texture
+            raise InputError(f"The image is larger than this OpenGL allows ({limit} pixels on a side).")
+        self._geometry = Geometry(self.device, scene)
 
     def __enter__(self) -> Renderer:
         return self
@@ -45,12 +42,10 @@ class Renderer:
     def release(self) -> None:
         """Give back what the scene holds on the GPU."""
         self._geometry.release()
-        for program in self._programs.values():
-            program.release()
-        self._programs.clear()
+        self.device.release()
 
     def render(self, technique: Technique) -> Frame:
-        """Draw a frame twice, the second timed.
+        """Draw a frame.
 
         Raises
         ------
@@ -59,125 +54,51 @@ class Renderer:
         """
         technique.check()
         technique.check_phase(self.scene.phase)
-        for _ in range(2):
-            # the first frame compiles shaders and touches memory
-            self.context.finish()
-            begin = time.perf_counter()
-            textures = self._draw(technique)
-            self.context.finish()
-            milliseconds = 1e3 * (time.perf_counter() - begin)
-            surface, scattering, gbuffer = (_read(texture) for texture in textures)
-            for texture in textures:
-                texture.release()
-        depth = np.where(gbuffer[..., 3] > 0, gbuffer[..., 3], self.scene.camera.rays()[2]).astype(np.float32)
+        textures = self._draw(technique)
+        surface, scattering, gbuffer = (_read(texture) for texture in textures)
+        for texture in textures:
+            texture.release()
+        far = self.scene.camera.rays()[2]
         return Frame(
             surface=surface[..., :3],
             scattering=scattering[..., :3],
-            depth=depth,
+            depth=np.where(gbuffer[..., 3] > 0, gbuffer[..., 3], far).astype(np.float32),
             lit_intervals=scattering[..., 3],
             technique=technique,
-            gl=gl_info(self.context),
-            milliseconds=milliseconds,
+            gl=self.device.info,
         )
+
+    def milliseconds(self, technique: Technique, frames: int = 5) -> float:
+        """Median wall-clock time of a frame, all passes up to glFinish, after `render` has warmed the driver up."""
+        times = []
+        for _ in range(frames):
+            self.device.context.finish()
+            begin = time.perf_counter()
+            textures = self._draw(technique)
+            self.device.context.finish()
+            times.append(1e3 * (time.perf_counter() - begin))
+            for texture in textures:
+                texture.release()
+        return float(np.median(times))
 
     def _draw(self, technique: Technique) -> tuple[Any, Any, Any]:
-        camera, step = self.scene.camera, technique.downsample
-        full = (camera.width, camera.height)
-        gbuffer = render_gbuffer(self.context, self._geometry, camera)
-        surface = self.context.texture(full, 4, dtype="f4")
-        coarse = self.context.texture(tuple(-(-side // step) for side in full), 4, dtype="f4")
-        for number, light in enumerate(self.scene.lights):
-            shadow_map = render_shadow_map(self.context, self._geometry, light, technique.shadow_map)
-            self._add_light(self._surface_program(light), surface, gbuffer, light, shadow_map, number == 0, {})
-            program = self._scattering_program(technique, light)
-            self._add_light(program, coarse, gbuffer, light, shadow_map, number == 0, {"downsample": step})
+        """Run all passes; returns the textures of surface, scattering and G-buffer, to be given back by the caller."""
+        device, scene, step = self.device, self.scene, technique.downsample
+        camera = scene.camera
+        gbuffer = render_gbuffer(device, self._geometry, camera)
+        surface = device.texture((camera.width, camera.height), 4)
+        scattering = device.texture((-(-camera.width // step), -(-camera.height // step)), 4)
+        for texture in (surface, scattering):
+            device.clear(texture)
+        for light in scene.lights:
+            shadow_map = render_shadow_map(device, self._geometry, light, technique.shadow_map)
+            add_surface(device, surface, scene, light, gbuffer, shadow_map)
+            add_scattering(device, scattering, technique, scene, light, gbuffer, shadow_map)
             shadow_map.texture.release()
+        if step > 1:
+            scattering = upsample(device, scattering, camera, gbuffer, step)
         gbuffer.material.release()
-        if step == 1:
-            return surface, coarse, gbuffer.normal_and_distance
-        fine = self._upsample(coarse, gbuffer, step)
-        coarse.release()
-        return surface, fine, gbuffer.normal_and_distance
-
-    def _add_light(
-        self,
-        program: Any,
-        texture: Any,
-        gbuffer: GBuffer,
-        light: Light,
-        shadow_map: ShadowMap,
-        is_first: bool,
-        more: dict[str, Any],
-    ) -> None:
-        """Run a full-screen pass for one light, added to those before it."""
-        gbuffer.normal_and_distance.use(1)
-        gbuffer.material.use(2)
-        uniforms = {
-            **camera_uniforms(self.scene.camera),
-            **shadow_map.uniforms(unit=0),
-            "normal_and_distance": 1,
-            "surface_material": 2,
-            "sigma_s": tuple(np.broadcast_to(self.scene.medium.sigma_s, 3).tolist()),
-            "sigma_t": tuple(np.broadcast_to(self.scene.medium.sigma_t, 3).tolist()),
-            "g": getattr(self.scene.phase, "g", 0.0),
-            "light.position": tuple(light.position),
-            "light.direction": tuple(light.direction),
-            "light.intensity": tuple(light.intensity),
-            "light.beam_width": light.beam_width,
-            "light.cutoff_angle": light.cutoff_angle,
-        }
-        set_uniforms(program, uniforms | more)
-        if not is_first:
-            self.context.enable(self.context.BLEND)
-            self.context.blend_func = self.context.ONE, self.context.ONE
-        self._fill(program, texture)
-        self.context.disable(self.context.BLEND)
-
-    def _upsample(self, coarse: Any, gbuffer: GBuffer, step: int) -> Any:
-        camera = self.scene.camera
-        fine = self.context.texture((camera.width, camera.height), 4, dtype="f4")
-        coarse.use(0)
-        gbuffer.normal_and_distance.use(1)
-        program = self._program(("upsample",), lambda: ShaderSource("upsample.frag.glsl"))
-        uniforms = {"scattering": 0, "normal_and_distance": 1, "downsample": step}
-        set_uniforms(program, uniforms | {"image_size": (camera.width, camera.height)})
-        self._fill(program, fine)
-        return fine
-
-    def _fill(self, program: Any, texture: Any) -> None:
-        target = self.context.framebuffer(color_attachments=[texture])
-        target.use()
-        array = self.context.vertex_array(program, [])
-        array.render(vertices=3)
-        array.release()
-        target.release()
-
-    def _surface_program(self, light: Light) -> Any:
-        defines = {"GREY": 1, "TILES": tile_count(light)}
-        return self._program(("surface", *defines.values()), lambda: ShaderSource("surface.frag.glsl", defines))
-
-    def _scattering_program(self, technique: Technique, light: Light) -> Any:
-        grey = np.ptp(np.broadcast_to(self.scene.medium.sigma_t, 3)) == 0
-        defines = {"GREY": int(grey), "TILES": tile_count(light), "STEPS": technique.steps}
-        includes = {
-            "<airlight>": AIRLIGHT_MODELS[technique.airlight].source,
-            "<visibility>": VISIBILITIES[technique.visibility].source,
-            "<phase>": f"phase/{self.scene.phase.name}.glsl",
-        }
-        return self._program(
-            (*defines.values(), *includes.values()),
-            lambda: ShaderSource("scattering.frag.glsl", defines, includes, generated_includes()),
-        )
-
-    def _program(self, key: tuple, source: Any) -> Any:
-        if key not in self._programs:
-            self._programs[key] = compile_program(self.context, VERTEX, source())
-        return self._programs[key]
-
-
-def generated_includes() -> dict[str, str]:
-    """Texts of the includes that are computed rather than written."""
-    return {"<gauss-legendre>": gauss_legendre_glsl(QUADRATURE_NODES)}
+        return surface, scattering, gbuffer.normal_and_distance
 
 
 def _read(texture: Any) -> np.ndarray:

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 SHADERS = Path(__file__).parent / "shaders"
 HEADER = "#version 430 core\n"
 _INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
@@ -83,7 +85,15 @@ def compile_program(context: Any, vertex: ShaderSource, fragment: ShaderSource) 
 
 
 def set_uniforms(program: Any, values: Mapping[str, Any]) -> None:
-    """Set the uniforms that the program has; a compiler drops those that a variant does not use."""
+    """Set the uniforms that the program has; a compiler drops those that a variant does not use.
+
+    Arrays are matrices, (4, 4) or (N, 4, 4); everything else is set as moderngl takes it.
+    """
     for name, value in values.items():
-        if name in program:
+        if name not in program:
+            continue
+        if isinstance(value, np.ndarray):
+            # OpenGL keeps matrices by columns
+            program[name].write(np.ascontiguousarray(value.swapaxes(-1, -2), np.float32))
+        else:
             program[name].value = value

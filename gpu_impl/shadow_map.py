@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from gpu_impl.device import Device
 from gpu_impl.geometry import Geometry
 from gpu_impl.matrices import projection_matrix, view_matrix
-from gpu_impl.shader_source import ShaderSource, compile_program
 from scenes.errors import InputError
 from scenes.model import Light
 
 # beyond this half-angle one flat map wastes its texels at the rim, and a cube serves
 WIDEST_FLAT_MAP = np.radians(60)
 NEAR, FAR = 1e-4, 1e6
-# (forward, up) of a cube's faces +x -x +y -y +z -z, in the order of tile_of() in shadow_lookup.glsl
+# (forward, up) of a cube's faces +x -x +y -y +z -z, in the order of tile_position() in shadow_lookup.glsl
 CUBE_FACES = (
     ((1, 0, 0), (0, 1, 0)),
     ((-1, 0, 0), (0, 1, 0)),
@@ -49,21 +49,20 @@ class ShadowMap:
     size: int
     texel_slope: float
 
-    def uniforms(self, unit: int) -> dict[str, Any]:
-        """Bind the texture to `unit` and give the uniforms of shadow_lookup.glsl."""
+    def bind(self, unit: int) -> dict[str, Any]:
+        """Bind the texture and give the uniforms of shadow_lookup.glsl."""
         self.texture.use(unit)
         return {
             "shadow_map": unit,
-            "tile_matrix": [tuple(matrix.T.ravel()) for matrix in self.matrices],
+            "tile_matrix": self.matrices[0],
             "tile_size": self.size,
             "texel_slope": self.texel_slope,
         }
 
 
-def render_shadow_map(context: Any, geometry: Geometry, light: Light, size: int) -> ShadowMap:
+def render_shadow_map(device: Device, geometry: Geometry, light: Light, size: int) -> ShadowMap:
     """Draw the scene from the light; the caller releases the texture."""
-    tiles = tile_count(light)
-    widest = context.info["GL_MAX_TEXTURE_SIZE"]
+    context, tiles, widest = device.context, tile_count(light), device.largest_texture
     if tiles * size > widest:
         raise InputError(f"A shadow map of {tiles} x {size} texels is wider than this OpenGL allows ({widest}).")
     # a hair wider than the cone, so that its edge falls inside the map
@@ -74,9 +73,8 @@ def render_shadow_map(context: Any, geometry: Geometry, light: Light, size: int)
         views = [view_matrix(light.position, np.array(f, float), np.array(up, float)) for f, up in CUBE_FACES]
     projection = projection_matrix(tan_half, tan_half, NEAR, FAR)
     matrices = np.stack([projection @ view for view in views]).astype(np.float32)
-    program = compile_program(context, ShaderSource("shadow_map.vert.glsl"), ShaderSource("shadow_map.frag.glsl"))
-    texture = context.texture((tiles * size, size), 1, dtype="f4")
-    texture.filter = (context.NEAREST, context.NEAREST)
+    program = device.program("shadow_map.frag.glsl", vertex="shadow_map.vert.glsl")
+    texture = device.texture((tiles * size, size), 1)
     target = context.framebuffer(color_attachments=[texture])
     target.use()
     target.clear(red=3e38)
@@ -86,11 +84,10 @@ def render_shadow_map(context: Any, geometry: Geometry, light: Light, size: int)
     for tile, matrix in enumerate(matrices):
         target.viewport = (tile * size, 0, size, size)
         for mesh in geometry.meshes:
-            mesh.draw(program, {"world_to_clip": tuple(matrix.T.ravel()), "light_position": tuple(light.position)})
+            mesh.draw(program, {"world_to_clip": matrix, "light_position": tuple(light.position)})
     context.blend_equation = context.FUNC_ADD
     context.disable(context.BLEND)
     target.release()
-    program.release()
     return ShadowMap(texture, matrices, size, 2 * float(tan_half) / size)
 
 

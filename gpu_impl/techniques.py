@@ -5,13 +5,16 @@ Adding a strategy or a model takes one GLSL file under `shaders/` and one line h
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from analytic.phase import Phase
 from scenes.errors import InputError
 
 DOWNSAMPLES = (1, 2, 4, 8)
 MOST_STEPS = 1 << 20
+CELL_STEPS = 128
 
 
 @dataclass(frozen=True)
@@ -20,7 +23,7 @@ class AirlightModel:
 
     source: str
     what: str
-    phases: tuple[str, ...] | None = None   # the phase functions it takes; None for all
+    phases: tuple[str, ...] | None = None  # the phase functions it takes; None for all
 
 
 @dataclass(frozen=True)
@@ -79,8 +82,8 @@ class Technique:
         allowed = AIRLIGHT_MODELS[self.airlight].phases
         if allowed is not None and phase.name not in allowed:
             raise InputError(
-                f"The airlight model {self.airlight} takes the phase function {' or '.join(allowed)}, and the scene has "
-                f"{phase.name}: use --airlight quadrature, or set the scene's phase function."
+                f"The airlight model {self.airlight} takes the phase function {' or '.join(allowed)}, and the scene "
+                f"has {phase.name}: use --airlight quadrature, or set the scene's phase function."
             )
 
 
@@ -88,26 +91,40 @@ TECHNIQUES = {
     technique.name: technique
     for technique in (
         Technique("Nishita1987", "uniform_march", "riemann"),
-        Technique("Weng2010", "lit_intervals", "weng2010", steps=128),
-        Technique("LitIntervalsQuadrature", "lit_intervals", "quadrature", steps=128),
+        Technique("Weng2010", "lit_intervals", "weng2010", steps=CELL_STEPS),
     )
 }
 
 
-def find_technique(name: str, **settings: object) -> Technique:
+def find_technique(name: str, **settings: int | None) -> Technique:
     """Look a technique up and change those of its settings that are not None.
+
+    Parameters
+    ----------
+    name : a published technique, or any other cell as `visibility+airlight`, such as `lit_intervals+quadrature`
+    settings : fields of `Technique`
 
     Raises
     ------
     InputError
         The name or a setting is not known.
     """
-    _choose("technique", name, TECHNIQUES)
-    technique = replace(TECHNIQUES[name], **{key: value for key, value in settings.items() if value is not None})
+    if name in TECHNIQUES:
+        technique = TECHNIQUES[name]
+    elif "+" in name:
+        visibility, model = name.split("+", 1)
+        technique = Technique(name, visibility, model, steps=CELL_STEPS)
+    else:
+        raise InputError(
+            f"There is no technique '{name}'; use one of {', '.join(TECHNIQUES)}, or a cell of the product such as "
+            "lit_intervals+quadrature."
+        )
+    changes: dict[str, Any] = {key: value for key, value in settings.items() if value is not None}
+    technique = replace(technique, **changes)
     technique.check()
     return technique
 
 
-def _choose(what: str, name: str, known: dict) -> None:
+def _choose(what: str, name: str, known: Iterable[str]) -> None:
     if name not in known:
         raise InputError(f"There is no {what} '{name}'; the known ones are {', '.join(known)}.")

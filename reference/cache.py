@@ -69,7 +69,8 @@ def store(recipe: Recipe, arrays: Arrays, record: Recipe) -> None:
         if temporary:
             temporary.unlink(missing_ok=True)
         raise InputError(
-            f"The reference cannot be kept in {path.parent} ({error.strerror}): make it writable, or set XDG_CACHE_HOME."
+            f"The reference cannot be kept in {path.parent} ({error.strerror}): make room there, make it writable, or "
+            "set XDG_CACHE_HOME to another folder."
         ) from None
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference.estimators import Estimator, Image
+from reference.goal import Goal
 from scenes.errors import InputError
 
 # fewer passes give no honest error bar: the spread of 8 is itself known to a quarter
@@ -17,27 +18,6 @@ PERCENTILE = 95
 # pixels darker than this share of the image mean count as if they were as bright as it: in an umbra the relative
 # error of next to nothing would otherwise decide
 DARKEST = 0.01
-
-
-@dataclass(frozen=True)
-class Goal:
-    """When to stop.
-
-    Attributes
-    ----------
-    rel_error : float      standard error relative to the pixel, at the 95th percentile of pixels
-    time_limit : float     [s]; checked after each pass
-    """
-
-    rel_error: float = 0.005
-    time_limit: float = 600.0
-
-    def __post_init__(self) -> None:
-        """Refuse goals that cannot be meant."""
-        if not 0 < self.rel_error < 1:
-            raise InputError(f"The relative error asked for is {self.rel_error}; use a number between 0 and 1.")
-        if not self.time_limit > 0:
-            raise InputError(f"The time limit is {self.time_limit} s; use a positive number.")
 
 
 @dataclass(frozen=True)
@@ -136,8 +116,7 @@ def converge(estimator: Estimator, goal: Goal, report: Callable[[Progress], None
         standard_error={layer: r.standard_error() for layer, r in running.items()} | nothing,
         image_mean={layer: r.mean.mean(axis=(0, 1)) for layer, r in running.items()}
         | {layer: image.mean(axis=(0, 1)) for layer, image in fixed.items()},
-        image_error={layer: r.image_error() for layer, r in running.items()}
-        | {layer: np.zeros(3) for layer in fixed},
+        image_error={layer: r.image_error() for layer, r in running.items()} | {layer: np.zeros(3) for layer in fixed},
         passes=passes,
         rel_error=present,
         reached=reached,
@@ -161,4 +140,6 @@ def relative_error(mean: Image, standard_error: Image) -> float:
 
 def _check_finite(layer: str, image: Image) -> None:
     if not np.isfinite(image).all():
-        raise InputError(f"The reference's layer '{layer}' has pixels that are not finite; is a light inside a surface?")
+        raise InputError(
+            f"The reference's layer '{layer}' has pixels that are not finite; is a light inside a surface?"
+        )

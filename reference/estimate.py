@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from reference import cache
-from reference.convergence import Estimate, Goal, Progress, converge
+from reference.convergence import Estimate, Progress, converge
 from reference.estimators import Estimator, Volpath, default_estimator
+from reference.goal import Goal
 from reference.integrator import mi
 from scenes.model import Scene
 
@@ -101,7 +102,9 @@ def _recipe(scene: Scene, estimator: Estimator, goal: Goal) -> dict[str, Any]:
 
 def _pack(estimate: Estimate) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     arrays = {f"{kind}.{layer}": image for kind in _ARRAYS for layer, image in getattr(estimate, kind).items()}
-    return arrays, {field.name: getattr(estimate, field.name) for field in fields(Estimate) if field.name not in _ARRAYS}
+    return arrays, {
+        field.name: getattr(estimate, field.name) for field in fields(Estimate) if field.name not in _ARRAYS
+    }
 
 
 def _unpack(arrays: dict[str, np.ndarray], record: dict[str, Any]) -> Estimate:

@@ -80,12 +80,12 @@ class Equiangular(PixelCentres):
     """The main estimator: the integrator `single_scattering` with stratified distances."""
 
     name = "equiangular"
-    version = 1
+    version = 2
     pixel_filter = "centre"
-    layers = ("scattering",)
+    layers: tuple[str, ...] = ("scattering",)
 
     def __init__(self, scene: Scene) -> None:
-        # strata within a pass: 64 in one pass have an eighth of the error of 8 passes of 8 where the integrand is smooth
+        # strata lie within a pass, and where the integrand is smooth their error falls as n^-3/2: few large passes
         super().__init__(scene, "stratified", samples_per_pass=64)
         self.integrator = mi.load_dict({"type": "single_scattering"})
 
@@ -113,7 +113,7 @@ class Volpath(PixelCentres):
     name = "volpath"
     version = 1
     pixel_filter = "centre"
-    layers = ("composite",)
+    layers: tuple[str, ...] = ("composite",)
 
     def __init__(self, scene: Scene) -> None:
         super().__init__(scene, "independent", samples_per_pass=64)
@@ -143,7 +143,7 @@ class FilmVolpath:
     name = "film_volpath"
     version = 1
     pixel_filter = "box"
-    layers = ("scattering", "surface")
+    layers: tuple[str, ...] = ("scattering", "surface")
 
     def __init__(self, scene: Scene) -> None:
         self.samples_per_pass = 32

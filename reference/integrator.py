@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from scenes.errors import InputError
 from scenes.mitsuba_setup import mitsuba
 
@@ -15,7 +17,7 @@ mi = mitsuba()
 import drjit as dr  # noqa: E402
 
 
-class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined, misc]
+class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
     r"""Single scattering by equiangular sampling (:monosp:`single_scattering`).
 
     .. pluginparameters::
@@ -88,7 +90,8 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined, mis
         """
         radiance = mi.Spectrum(0.0)
         for emitter in delta_emitters(scene):
-            t, inverse_pdf = equiangular(ray, t_max, position_of(emitter, ray), sampler.next_1d(active))
+            begin, end = reach(emitter, ray, t_max)
+            t, inverse_pdf = equiangular(ray, begin, end, position_of(emitter, ray), sampler.next_1d(active))
             mei = self._interaction(medium, ray, t)
             ds, weight = emitter.sample_direction(mei, mi.Point2f(0.5), active)
             lit = active & ~scene.ray_test(mei.spawn_ray_to(ds.p), active)
@@ -143,8 +146,42 @@ def position_of(emitter: Any, ray: Any) -> Any:
     return emitter.sample_direction(anywhere, mi.Point2f(0.5), True)[0].p
 
 
-def equiangular(ray: Any, t_max: Any, position: Any, u: Any) -> tuple[Any, Any]:
-    """Sample a distance on [0, t_max] with density proportional to 1 / d^2 (Kulla and Fajardo 2012, section 4).
+def reach(emitter: Any, ray: Any, t_max: Any) -> tuple[Any, Any]:
+    """Bound the part of the ray that a light can reach: a spot's cone, a little widened; everything for a point.
+
+    It only says where to sample. The light's own falloff decides what is lit, so it may be too wide, never too narrow.
+
+    Returns
+    -------
+    begin, end : Float    [scene unit]; begin = end where the light reaches nothing
+    """
+    begin, end = mi.Float(0.0), mi.Float(t_max)
+    parameters = mi.traverse(emitter)
+    cutoff = np.radians(float(np.max(parameters["cutoff_angle"]))) + 1e-3 if "cutoff_angle" in parameters else np.pi
+    if cutoff > 0.49 * np.pi:
+        return begin, end
+    axis = mi.Vector3f(dr.normalize(parameters["to_world"] @ mi.Vector3f(0, 0, 1)))
+    cos2 = float(np.cos(cutoff)) ** 2
+    from_light = ray.o - position_of(emitter, ray)
+    along_d, along_o = dr.dot(ray.d, axis), dr.dot(from_light, axis)
+    # the ray is inside the double cone where a t^2 + 2 b t + c > 0
+    a = dr.square(along_d) - cos2
+    b = along_d * along_o - cos2 * dr.dot(ray.d, from_light)
+    c = dr.square(along_o) - cos2 * dr.squared_norm(from_light)
+    a = dr.select(dr.abs(a) < 1e-6, 1e-6, a)
+    root = dr.sqrt(dr.maximum(dr.square(b) - a * c, 0))
+    low, high = dr.minimum((-b - root) / a, (-b + root) / a), dr.maximum((-b - root) / a, (-b + root) / a)
+    # a > 0: the ray enters or leaves one nappe for good; a < 0: it crosses one, maybe the dark one behind the light
+    crossing = a < 0
+    begin = dr.select(crossing | (along_d > 0), dr.select(crossing, low, high), begin)
+    end = dr.select(crossing, high, dr.select(along_d > 0, end, low))
+    dark = crossing & ((dr.square(b) <= a * c) | (along_o + 0.5 * (low + high) * along_d < 0))
+    begin = dr.clip(begin, 0, t_max)
+    return begin, dr.select(dark, begin, dr.clip(end, begin, t_max))
+
+
+def equiangular(ray: Any, begin: Any, end: Any, position: Any, u: Any) -> tuple[Any, Any]:
+    """Sample a distance on [begin, end] with density proportional to 1 / d^2 (Kulla and Fajardo 2012, section 4).
 
     Returns
     -------
@@ -155,8 +192,8 @@ def equiangular(ray: Any, t_max: Any, position: Any, u: Any) -> tuple[Any, Any]:
     t_h = dr.dot(to_light, ray.d)
     h2 = dr.maximum(dr.squared_norm(dr.cross(to_light, ray.d)), 1e-20)
     h = dr.sqrt(h2)
-    theta_a, theta_b = dr.atan2(-t_h, h), dr.atan2(t_max - t_h, h)
-    t = dr.clip(t_h + h * dr.tan(dr.lerp(theta_a, theta_b, u)), 0, t_max)
+    theta_a, theta_b = dr.atan2(begin - t_h, h), dr.atan2(end - t_h, h)
+    t = dr.clip(t_h + h * dr.tan(dr.lerp(theta_a, theta_b, u)), begin, end)
     return t, (theta_b - theta_a) * (h2 + dr.square(t - t_h)) / h
 
 

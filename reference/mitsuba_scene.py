@@ -30,7 +30,7 @@ def instantiate(scene: Scene) -> MitsubaScene:
     config = parser.ParserConfig(mi.variant())
     config.merge_meshes = False
     config.merge_equivalent = False
-    made = parser.instantiate(config, scene.parsed)
+    made: Any = parser.instantiate(config, scene.parsed)
     parameters = mi.traverse(made)
     for mesh in scene.meshes:
         if mesh.computed_normals and mesh.file and mesh.file.path.suffix == ".ply":

@@ -22,4 +22,6 @@ def scene_path(scene: str | Path) -> Path:
     named = FOLDER / f"{asked.name.removesuffix('.xml')}.xml"
     if asked.name == str(scene) and named.is_file():
         return named
-    raise InputError(f"There is no scene '{scene}': give the path of a Mitsuba XML file or one of {', '.join(shipped())}.")
+    raise InputError(
+        f"There is no scene '{scene}': give the path of a Mitsuba XML file or one of {', '.join(shipped())}."
+    )

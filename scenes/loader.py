@@ -105,7 +105,9 @@ def _camera(node: Node, size: tuple[int, int] | None) -> tuple[Camera, Node]:
     tan_half_x = _tan_half_x(node, width / height)
     medium = node.child("Medium")
     if medium is None:
-        raise node.refuse("is not inside a medium, so there is no fog to render: put <ref id='...'/> of a medium in it.")
+        raise node.refuse(
+            "is not inside a medium, so there is no fog to render: put <ref id='...'/> of a medium in it."
+        )
     node.children("Sampler")
     node.finish()
     return Camera(to_world, tan_half_x, near, far, width, height), medium

@@ -134,7 +134,7 @@ def _ply_header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
                 pass
             case ["format", name, "1.0"] if name in PLY_FORMATS:
                 encoding = name
-            case ["element", name, rows] if rows.isascii() and rows.isdigit():
+            case ["element", name, rows] if rows.isascii() and rows.isdigit() and len(rows) < 19:
                 elements.append(Element(name, int(rows), []))
             case ["property", "list", count, index, name] if (
                 elements
@@ -199,35 +199,43 @@ def _ply_text(path: Path, text: bytes, elements: list[Element]) -> dict[str, NDA
 
 
 def _read_obj(path: Path, data: bytes) -> Triangles:
-    lines = [line.split() for line in data.splitlines()]
-    positions = _obj_table(path, lines, b"v", 3)
-    texture = _obj_table(path, lines, b"vt", 2)
-    normals = _obj_table(path, lines, b"vn", 3)
-    number: dict[bytes, int] = {}  # each distinct v/vt/vn is one vertex, numbered as it first appears
-    faces: list[tuple[int, int, int]] = []
-    for line in lines:
-        if line and line[0] == b"f":
-            corners = [number.setdefault(corner, len(number)) for corner in line[1:]]
-            if len(corners) < 3:
-                _refuse(path, f"face {len(faces)} has fewer than three corners")
-            faces.extend((corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1))
-    keys = [corner.split(b"/") for corner in number]
-    by_position = _obj_column(path, keys, 0, positions)
-    if by_position is None:
+    kept: dict[bytes, list[list[bytes]]] = {b"v": [], b"vt": [], b"vn": [], b"f": []}
+    for line in data.splitlines():
+        keyword, *values = line.split() or [b""]
+        if keyword in kept:
+            kept[keyword].append(values)
+    if not kept[b"f"]:
         _refuse(path, "the mesh has no faces", "check that it is an OBJ file of polygons")
-    by_texture = _obj_column(path, keys, 1, texture)
-    uv = None if by_texture is None else np.stack([by_texture[:, 0], np.float32(1) - by_texture[:, 1]], axis=1)
-    return Triangles(by_position, np.array(faces, np.uint32), _obj_column(path, keys, 2, normals), uv)
+    number: dict[bytes, int] = {}  # each distinct v/vt/vn is one vertex, numbered as it first appears
+    corners = np.array([number.setdefault(corner, len(number)) for face in kept[b"f"] for corner in face], np.uint32)
+    faces = _fans(path, corners, np.array([len(face) for face in kept[b"f"]]))
+    keys = [corner.split(b"/") for corner in number]
+    positions = _obj_column(path, keys, 0, _obj_table(path, kept[b"v"], "v", 3))
+    texture = _obj_column(path, keys, 1, _obj_table(path, kept[b"vt"], "vt", 2))
+    normals = _obj_column(path, keys, 2, _obj_table(path, kept[b"vn"], "vn", 3))
+    if positions is None:
+        _refuse(path, "its faces name no positions")
+    uv = None if texture is None else np.stack([texture[:, 0], np.float32(1) - texture[:, 1]], axis=1)
+    return Triangles(positions, faces, normals, uv)
 
 
-def _obj_table(path: Path, lines: list[list[bytes]], keyword: bytes, width: int) -> NDArray[np.float32]:
-    rows = [line[1 : width + 1] for line in lines if line and line[0] == keyword]
+def _fans(path: Path, corners: NDArray[np.uint32], sizes: NDArray[np.integer]) -> NDArray[np.uint32]:
+    """Triangles of polygons with `sizes` corners each: all from the first corner, as Mitsuba cuts them."""
+    if sizes.min() < 3:
+        _refuse(path, f"face {int(sizes.argmin())} has fewer than three corners")
+    cuts = sizes - 2
+    first = np.repeat(np.cumsum(sizes) - sizes, cuts)
+    step = np.arange(len(first)) - np.repeat(np.cumsum(cuts) - cuts, cuts)
+    return np.stack([corners[first], corners[first + step + 1], corners[first + step + 2]], axis=1)
+
+
+def _obj_table(path: Path, rows: list[list[bytes]], keyword: str, width: int) -> NDArray[np.float32]:
     try:
         with np.errstate(over="ignore"):
-            values = np.array([[float(token) for token in row] for row in rows], np.float64)
+            values = np.array([[float(token) for token in row[:width]] for row in rows], np.float64)
             return values.astype(np.float32).reshape(len(rows), width)
     except ValueError:
-        _refuse(path, f"a '{keyword.decode()}' line does not hold {width} numbers")
+        _refuse(path, f"a '{keyword}' line does not hold {width} numbers")
 
 
 def _obj_column(

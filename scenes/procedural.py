@@ -79,13 +79,13 @@ RECIPES: dict[str, Recipe] = {
     ),
     "yeahright_cc2.ply": Recipe(
         standins.fine_wires,
-        "2b6d24e7f2980b95d6260a759898a471fe4a0f9d635f6730a6ca1e3b1b0bfee9",
-        188244,
+        "35d47bde6a8b921159c8f1e91d90ffd8361fb047edfe66bf19932f99c46b2bd2",
+        188072,
     ),
     "yeahright_cc1.ply": Recipe(
         standins.coarse_wires,
-        "cf34d1530262a9f028cc0f2be85404779c8739bed334b61dc609f1752df41f2a",
-        46998,
+        "95b41c0d45a83d4277813628b8c77cc413250d77f9693dc46d37539890866208",
+        47116,
     ),
     "bunny_hr.ply": Recipe(
         standins.rabbit,

@@ -92,7 +92,9 @@ def _place(
     else:
         # the transpose of the inverse, which keeps normals normal under uneven scaling
         normals = np.asarray(triangles.normals, np.float64) @ np.linalg.inv(linear)
-        normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+        length = np.linalg.norm(normals, axis=-1, keepdims=True)
+        # a file may hold a normal of length zero; it stays one, and its surface black
+        normals /= np.where(length > 0, length, 1)
     if flip:
         faces = faces[:, ::-1]
         normals = None if normals is None else -normals

@@ -24,16 +24,17 @@ TEAPOT: Bounds = ((-3.0, 0.0, -2.0), (3.434, 3.15, 2.0))
 
 def fine_wires() -> Triangles:
     """A blob of bent wires in place of YeahRight at 188,672 triangles."""
-    return surface(_wires(), 0.130, YEAHRIGHT_CC2)
+    return surface(_wires(0.19), 0.1274, YEAHRIGHT_CC2)
 
 
 def coarse_wires() -> Triangles:
-    """The blob of bent wires on a coarser grid, in place of YeahRight at 47,168 triangles."""
-    return surface(_wires(), 0.28, YEAHRIGHT_CC1)
+    """The blob of bent wires, thicker for a coarser grid, in place of YeahRight at 47,168 triangles."""
+    return surface(_wires(0.25), 0.272, YEAHRIGHT_CC1)
 
 
-def _wires(joints: int = 135, extra: int = 127) -> list[Part]:
-    """A random tree of bent wires inside an ellipsoid, and `extra` wires more: each closes one more loop."""
+def _wires(thinnest: float) -> list[Part]:
+    """A random tree of bent wires inside an ellipsoid, and 127 wires more, each of which closes one more loop."""
+    joints, extra = 135, 127
     draw = Random(1).random
     centre, radii = (0.0, 7.5, 1.0), (7.9, 7.2, 13.8)
     points: list[Point] = []
@@ -51,7 +52,7 @@ def _wires(joints: int = 135, extra: int = 127) -> list[Part]:
         a, b = points[i], points[j]
         bow = 0.45 * math.sqrt(_squared(a, b))
         middle = [(p + q) / 2.0 + bow * (2.0 * draw() - 1.0) for p, q in zip(a, b, strict=True)]
-        thick = 0.19 + 0.12 * draw()
+        thick = thinnest + 0.12 * draw()
         beads: list[Bead] = [(*a, thick), (middle[0], middle[1], middle[2], 0.8 * thick), (*b, thick)]
         parts.append(limb(beads, 0.3, 5))
     return parts

@@ -21,11 +21,20 @@ SUBDIVISIONS = 6  # of the icosahedron: 81,920 triangles, chord error 7.1e-5 of 
 @lru_cache(maxsize=1)
 def sphere() -> Triangles:
     """Unit sphere around the origin, normals outward."""
-    from trimesh.creation import icosphere  # slow to import, and most scenes have no sphere
-
-    ball = icosphere(subdivisions=SUBDIVISIONS)
-    vertices = _frozen(ball.vertices)
-    return Triangles(vertices, _frozen_faces(ball.faces), vertices)
+    # trimesh has an icosphere too, but takes a second to import
+    vertices, faces = _icosahedron()
+    for _ in range(SUBDIVISIONS):
+        edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
+        edges, edge_of = np.unique(edges, axis=0, return_inverse=True)
+        middles = len(vertices) + edge_of.reshape(-1, 3)
+        middle = vertices[edges].sum(axis=1)
+        vertices = np.vstack([vertices, middle / np.linalg.norm(middle, axis=1, keepdims=True)])
+        (a, b, c), (ab, bc, ca) = faces.T, middles.T
+        faces = np.concatenate(
+            [np.stack(corners, axis=1) for corners in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+        )
+    rounded = _frozen(vertices)
+    return Triangles(rounded, _frozen_faces(faces), rounded)
 
 
 @lru_cache(maxsize=1)
@@ -101,6 +110,20 @@ def cylinder(p0: NDArray[np.floating], p1: NDArray[np.floating], radius: float) 
         [np.column_stack([here, there, there + SIDES]), np.column_stack([there + SIDES, here + SIDES, here])]
     )
     return Triangles(_frozen(vertices), _frozen_faces(faces), _frozen(np.vstack([outward, outward])))
+
+
+def _icosahedron() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Twelve unit vertices, twenty faces, counter-clockwise from outside."""
+    golden = (1 + np.sqrt(5)) / 2
+    rectangle = [(s, t * golden, 0.0) for s in (-1.0, 1.0) for t in (-1.0, 1.0)]
+    vertices = np.array([np.roll(corner, axis) for axis in range(3) for corner in rectangle])
+    # the twenty triples of vertices that are neighbours, an edge of length 2 apart
+    near = np.isclose(np.linalg.norm(vertices[:, None] - vertices, axis=2), 2)
+    triples = [
+        (i, j, k) for i in range(12) for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[k, i]
+    ]
+    faces = np.array([t if np.linalg.det(vertices[list(t)]) > 0 else t[::-1] for t in triples])
+    return vertices / np.linalg.norm(vertices[0]), faces
 
 
 def _circle() -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""A node of Mitsuba's parse that remembers what was read of it, so that nothing in a scene is passed over in silence."""
+"""A node of Mitsuba's parse that remembers what was read of it, so that no part of a scene is ignored in silence."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenes.errors import InputError
+from scenes.mitsuba_setup import mitsuba
 
 REQUIRED: Any = object()
 
@@ -58,8 +59,7 @@ class Node:
 
     def color(self, name: str, default: Any = REQUIRED) -> NDArray[np.float64]:
         """Read a linear Rec.709 colour, (3,), from an <rgb>, a <float> or a uniform <spectrum>."""
-        import mitsuba as mi
-
+        mi = mitsuba()
         value = self.take(name, default)
         if isinstance(value, mi.Spectrum) and value.is_uniform():
             value = value.values[0]

@@ -1,29 +1,30 @@
-// The shadow map: distance from the light to the nearest surface, one texel per direction. A spot has one tile; a point
-// light has the six faces of a cube side by side.
+// The shadow map: distance from the light to the nearest surface, one texel per direction. A narrow spot has one tile; any
+// other light has the six faces of a cube side by side.
 #include "contract.glsl"
 
 uniform sampler2D shadow_map;
-uniform mat4 tile_matrix[TILES];   // world to clip space of each tile
-uniform int tile_size;             // texels on a side
+uniform int tile_size;      // texels on a side
+uniform mat4 tile_matrix;   // world to clip space of a spot's tile
 
-int tile_of(vec3 from_light) {
-    if (TILES == 1) return 0;
-    vec3 a = abs(from_light);
-    if (a.x >= a.y && a.x >= a.z) return from_light.x > 0.0 ? 0 : 1;
-    if (a.y >= a.z) return from_light.y > 0.0 ? 2 : 3;
-    return from_light.z > 0.0 ? 4 : 5;
+// Where in the map a direction is looked up: position in its tile, -1 to 1, and the number of the tile (shadow_map.py).
+vec3 tile_position(vec3 from_light) {
+    vec3 a = abs(from_light), d = from_light;
+    if (a.x >= a.y && a.x >= a.z) return d.x > 0.0 ? vec3(d.zy / a.x, 0.0) : vec3(-d.z / a.x, d.y / a.x, 1.0);
+    if (a.y >= a.z) return d.y > 0.0 ? vec3(d.xz / a.y, 2.0) : vec3(-d.x / a.y, d.z / a.y, 3.0);
+    return d.z > 0.0 ? vec3(-d.x / a.z, d.y / a.z, 4.0) : vec3(d.xy / a.z, 5.0);
 }
 
-// Distance to the nearest surface in the direction of `point`; without end outside the map, where a spot sheds no light.
+// Distance to the nearest surface in the direction of `point`; without end outside a spot's map, where it sheds no light.
 float nearest_surface(Light light, vec3 point) {
-    int tile = tile_of(point - light.position);
-    vec4 clip = tile_matrix[tile] * vec4(point, 1.0);
-    if (clip.w <= 0.0 || any(greaterThanEqual(abs(clip.xy), vec2(clip.w)))) {
-        if (TILES == 1) return 3e38;
-        clip.xy = clamp(clip.xy, -clip.w, clip.w);
-    }
-    ivec2 texel = min(ivec2((0.5 + 0.5 * clip.xy / clip.w) * float(tile_size)), ivec2(tile_size - 1));
-    return texelFetch(shadow_map, texel + ivec2(tile * tile_size, 0), 0).r;
+#if TILES == 1
+    vec4 clip = tile_matrix * vec4(point, 1.0);
+    if (clip.w <= 0.0 || max(abs(clip.x), abs(clip.y)) >= clip.w) return 3e38;
+    vec3 position = vec3(clip.xy / clip.w, 0.0);
+#else
+    vec3 position = tile_position(point - light.position);
+#endif
+    ivec2 texel = min(ivec2((0.5 + 0.5 * position.xy) * float(tile_size)), ivec2(tile_size - 1));
+    return texelFetch(shadow_map, texel + ivec2(int(position.z) * tile_size, 0), 0).r;
 }
 
 bool in_shadow(Light light, vec3 point) { return distance(point, light.position) > nearest_surface(light, point); }

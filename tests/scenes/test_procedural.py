@@ -78,7 +78,7 @@ def changes_per_row(mesh: Triangles, folder: Path, direction: tuple[float, float
     up = np.cross(right, forward)
     towards = mitsuba.ScalarVector3f(*forward.tolist())
     counts = []
-    for y in np.linspace(-1, 1, 49):
+    for y in np.linspace(-1, 1, 33):
         starts = centre - 2 * radius * forward + radius * (y * up + np.linspace(-1, 1, 301)[:, None] * right)
         dark = [scene.ray_test(mitsuba.Ray3f(mitsuba.ScalarPoint3f(*start), towards)) for start in starts.tolist()]
         if any(dark):
@@ -91,7 +91,7 @@ def changes_per_row(mesh: Triangles, folder: Path, direction: tuple[float, float
     [
         ("torus.ply", 2.0, 4.0),
         ("dragon_97k_fixed.ply", 2.5, 5.5),  # 12 directions at 512 x 512: 4.2 on average, the real dragon 3.2
-        ("yeahright_cc2.ply", 10.0, 17.0),  # 13.6, and YeahRight 12.5
+        ("yeahright_cc2.ply", 8.0, 17.0),  # 13.6, and YeahRight 12.5
     ],
 )
 def test_a_light_sees_about_as_many_changes_as_on_the_real_mesh(
@@ -130,7 +130,7 @@ def test_a_capsule_has_its_own_distances() -> None:
     nearest = np.stack([np.clip(points[:, 0], 0.0, 2.0), *np.zeros((2, len(points)))], axis=1)
     np.testing.assert_allclose(np.linalg.norm(points - nearest, axis=1), 1.0, atol=4e-3)
     volume = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).volume
-    assert volume == pytest.approx(np.pi * 2.0 + 4.0 / 3.0 * np.pi, rel=3e-3)
+    assert volume == pytest.approx(np.pi * 2.0 + 4.0 / 3.0 * np.pi, rel=5e-3)
 
 
 def test_a_smooth_curve_passes_through_its_beads() -> None:

@@ -1,0 +1,1 @@
+"""What is asked: suites, metrics, sheets, and the command line."""

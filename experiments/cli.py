@@ -1,0 +1,248 @@
+"""The command line. Heavy imports wait until a command needs them, so that `--help` answers at once."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from reference.goal import Goal
+from scenes.errors import InputError
+
+if TYPE_CHECKING:
+    from reference.estimate import Reference
+    from scenes.model import Scene
+
+# volpath's pixels are noisy; its image mean is known to some 0.03 % by then
+CHECK_GOAL = Goal(rel_error=0.05, time_limit=30.0)
+
+app = typer.Typer(
+    name="airlight",
+    help="How accurate a real-time volumetric-shadow technique is, where its error comes from, and what it costs.",
+    # plain help: rich's own costs three times the start-up
+    rich_markup_mode=None,
+    add_completion=False,
+    # a defect of ours shows as a plain traceback, which can be pasted into an issue
+    pretty_exceptions_enable=False,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+SceneArgument = Annotated[
+    str, typer.Argument(metavar="SCENE", help="A shipped scene's name or the path of a Mitsuba XML file.")
+]
+Parameters = Annotated[
+    list[str] | None,
+    typer.Option("--parameter", "-p", metavar="NAME=VALUE", help="A $parameter of the scene; repeatable."),
+]
+Size = Annotated[
+    tuple[int, int] | None,
+    typer.Option("--size", metavar="W H", help="Image size in pixels; by default the scene's own."),
+]
+RelError = Annotated[
+    float,
+    typer.Option(help="Relative standard error to reach, at the 95th percentile of pixels of the scattering layer."),
+]
+TimeLimit = Annotated[float, typer.Option(help="Seconds after which the reference stops where it is.")]
+
+
+def main() -> None:
+    """Run the command line: what cannot be used ends in one sentence and exit code 2."""
+    try:
+        app()
+    except InputError as error:
+        print(f"airlight: {error}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        print("airlight: interrupted.", file=sys.stderr)
+        sys.exit(130)
+
+
+@app.command()
+def doctor() -> None:
+    """Look at Python, OpenGL, Mitsuba, LLVM and meshes, and say the cure where something is missing.
+
+    Exits with 1 where the main job cannot run.  Example: airlight doctor
+    """
+    from experiments.doctor import examine, report
+    from experiments.terminal import console
+
+    findings = examine()
+    console.print(report(findings))
+    if any(finding.state == "missing" for finding in findings):
+        raise typer.Exit(1)
+
+
+@app.command("list")
+def list_() -> None:
+    """List scenes, techniques and their parts, suites and meshes.
+
+    Example: airlight list
+    """
+    from experiments.listing import listing
+    from experiments.terminal import console
+
+    for table in listing():
+        console.print(table)
+
+
+@app.command()
+def render(
+    scene: SceneArgument,
+    out: Annotated[Path, typer.Option(help="The EXR file to write.")],
+    technique: Annotated[
+        str, typer.Option(help="A technique, or a cell such as lit_intervals+quadrature.")
+    ] = "Weng2010",
+    parameter: Parameters = None,
+    size: Size = None,
+    steps: Annotated[int | None, typer.Option(help="Samples of the visibility along a ray.")] = None,
+    shadow_map: Annotated[int | None, typer.Option(help="Texels on a side of the shadow map.")] = None,
+    downsample: Annotated[int | None, typer.Option(help="Evaluate fog on every N-th pixel: 1, 2, 4 or 8.")] = None,
+) -> None:
+    """Draw a scene with an OpenGL technique and write a layered EXR.
+
+    Example: airlight render donut_dragon --technique Weng2010 --size 512 512 --out dragon.exr
+    """
+    from experiments.exr import check_writable
+    from experiments.pictures import write_frame
+    from experiments.terminal import announce_stand_ins, console
+    from gpu_impl.renderer import Renderer
+    from gpu_impl.techniques import find_technique
+    from scenes.loader import load
+
+    chosen = find_technique(technique, steps=steps, shadow_map=shadow_map, downsample=downsample)
+    check_writable(out)
+    loaded = load(scene, size=size, **_parameters(parameter))
+    announce_stand_ins(loaded)
+    with Renderer(loaded) as renderer:
+        frame = renderer.render(chosen)
+        milliseconds = renderer.milliseconds(chosen)
+    write_frame(out, loaded, frame)
+    console.print(
+        f"{out}: {loaded.name}, {chosen.name}, {milliseconds:.1f} ms a frame on {frame.gl.renderer} (median of 5, wall "
+        "clock around glFinish)",
+        highlight=False,
+    )
+
+
+@app.command()
+def reference(
+    scene: SceneArgument,
+    out: Annotated[Path, typer.Option(help="The EXR file to write.")],
+    parameter: Parameters = None,
+    size: Size = None,
+    rel_error: RelError = 0.005,
+    time_limit: TimeLimit = 600.0,
+    check: Annotated[
+        bool, typer.Option("--check", help="Estimate the scene by volpath too and compare the means.")
+    ] = False,
+) -> None:
+    """Estimate a scene's reference in Mitsuba and write it with its standard error.
+
+    Example: airlight reference sphere --size 256 256 --rel-error 0.005 --out sphere.exr
+    """
+    from experiments.exr import check_writable
+    from experiments.pictures import write_reference
+    from experiments.terminal import TerminalWatcher, announce_accuracy, announce_stand_ins, announce_variant, console
+    from scenes.loader import load
+
+    goal = Goal(rel_error, time_limit)
+    check_writable(out)
+    loaded = load(scene, size=size, **_parameters(parameter))
+    announce_stand_ins(loaded)
+    announce_variant()
+    from reference.estimate import estimate_reference
+
+    with TerminalWatcher(rel_error) as watcher:
+        result = estimate_reference(loaded, goal, watcher.reference)
+    announce_accuracy(result, rel_error)
+    write_reference(out, loaded, result)
+    estimate = result.estimate
+    source = "from the cache" if result.from_cache else f"{estimate.seconds:.1f} s"
+    console.print(
+        f"{out}: {loaded.name}, relative standard error {estimate.rel_error:.3%} at the 95th percentile, "
+        f"{estimate.passes} passes, {source}",
+        highlight=False,
+    )
+    if check:
+        _check_against_volpath(loaded, result)
+
+
+@app.command()
+def compare(
+    picture: Annotated[Path, typer.Argument(metavar="F.exr", help="The picture to judge; any program's EXR.")],
+    truth: Annotated[Path, typer.Argument(metavar="REFERENCE.exr", help="The reference.")],
+    layer: Annotated[str, typer.Option(help="Which layer: composite, scattering or surface.")] = "composite",
+    heatmap: Annotated[Path | None, typer.Option(help="Write a PNG with both pictures and their errors.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the metrics as JSON.")] = False,
+) -> None:
+    """Measure how far a picture is from its reference.
+
+    Example: airlight compare dragon.exr reference.exr --layer scattering --heatmap error.png
+    """
+    import json as json_module
+    from dataclasses import asdict
+
+    from experiments.compare import compare_files
+    from experiments.terminal import console, metrics_table
+
+    metrics = compare_files(picture, truth, layer, heatmap)
+    if json:
+        print(json_module.dumps({"layer": layer, **asdict(metrics)}))
+    else:
+        console.print(metrics_table(layer, metrics))
+        if heatmap:
+            console.print(f"Heat map: {heatmap}", highlight=False)
+
+
+@app.command()
+def run(
+    suite: Annotated[
+        str, typer.Argument(metavar="SUITE", help="A shipped suite's name or the path of a TOML file.")
+    ] = "quick",
+    out: Annotated[Path, typer.Option(help="Folder in which the folder of this run is made.")] = Path("runs"),
+) -> None:
+    """Run a suite: techniques beside references, with a table, a sheet and an EXR per case.
+
+    Example: airlight run quick
+    """
+    from experiments.suite import load_suite
+    from experiments.terminal import TerminalWatcher, announce_variant, console, results_table
+
+    name, loaded = load_suite(suite)
+    # says which Mitsuba serves before anything is computed
+    announce_variant()
+    from experiments.runner import run_suite
+
+    with TerminalWatcher(loaded.reference.rel_error) as watcher:
+        rows, folder = run_suite(name, loaded, out, watcher)
+    console.print(results_table(rows))
+    console.print(f"Results: {folder.resolve()}", highlight=False, soft_wrap=True)
+
+
+def _parameters(given: list[str] | None) -> dict[str, str]:
+    parameters = {}
+    for text in given or []:
+        name, equals, value = text.partition("=")
+        if not (name and equals):
+            raise InputError(f"-p {text} should be NAME=VALUE, such as -p sigma_t=0.2.")
+        parameters[name] = value
+    return parameters
+
+
+def _check_against_volpath(scene: Scene, result: Reference) -> None:
+    from experiments.terminal import TerminalWatcher, console
+    from reference.agreement import LARGEST_Z, image_mean_test
+    from reference.estimate import estimate_volpath
+
+    with TerminalWatcher(CHECK_GOAL.rel_error) as watcher:
+        test = image_mean_test(result.estimate, estimate_volpath(scene, CHECK_GOAL, watcher.reference))
+    console.print(
+        f"volpath's image mean differs by {test.difference:+.4%} with a standard error of {test.standard_error:.4%}: "
+        f"z = {test.z:+.2f}, {'agrees' if test.agrees else 'does NOT agree'} (|z| < {LARGEST_Z:g})",
+        highlight=False,
+    )
+    if not test.agrees:
+        raise typer.Exit(1)

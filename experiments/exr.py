@@ -1,0 +1,98 @@
+"""Layered float32 EXR files, as tev shows them."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from scenes.errors import InputError
+
+Layers = dict[str, np.ndarray]
+PREFIX = "airlight:"
+
+
+def write_exr(path: Path, layers: Mapping[str, np.ndarray], metadata: Mapping[str, object]) -> None:
+    """Write layers to a file, beside its place first and then renamed.
+
+    Parameters
+    ----------
+    layers : name to (H, W, 3) or (H, W)    three channels become name.R, name.G, name.B; one becomes name.Y
+    metadata : kept as text attributes with the prefix "airlight:"
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    import OpenEXR
+
+    channels: dict[str, np.ndarray] = {}
+    for name, image in layers.items():
+        planes = {"Y": image} if image.ndim == 2 else dict(zip("RGB", np.moveaxis(image, -1, 0), strict=True))
+        channels |= {f"{name}.{letter}": np.ascontiguousarray(plane, np.float32) for letter, plane in planes.items()}
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    header |= {PREFIX + key: str(value) for key, value in metadata.items()}
+    path = Path(path)
+    temporary = None
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".exr.part")
+        os.close(handle)
+        temporary = Path(name)
+        OpenEXR.File(header, channels).write(str(temporary))
+        temporary.chmod(0o644)
+        temporary.replace(path)
+    except (OSError, RuntimeError) as error:
+        if temporary:
+            temporary.unlink(missing_ok=True)
+        raise InputError(f"{path} cannot be written ({error}): choose another --out or make its folder.") from None
+
+
+def check_writable(path: Path) -> None:
+    """Raise InputError where `path` could not be written: better before the work than after it."""
+    folder = path.absolute().parent
+    if path.is_dir():
+        raise InputError(f"{path} is a folder; name a file in it.")
+    if not folder.is_dir():
+        raise InputError(f"The folder {folder} does not exist; make it first.")
+    if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
+        raise InputError(f"{path} cannot be written; choose another place.")
+
+
+def read_exr(path: Path) -> tuple[Layers, dict[str, str]]:
+    """Read a file of any program.
+
+    Returns
+    -------
+    layers : name to (H, W, 3) or (H, W), float32     plain R, G, B channels are the layer "composite"
+    metadata : dict                                   what airlight wrote, without the prefix
+
+    Raises
+    ------
+    InputError
+        The file is missing or is not an EXR.
+    """
+    import OpenEXR
+
+    if not Path(path).is_file():
+        raise InputError(f"There is no file {path}.")
+    try:
+        with OpenEXR.File(str(path), separate_channels=True) as file:
+            channels = {name: np.array(channel.pixels, np.float32) for name, channel in file.channels().items()}
+            header = file.header()
+    except (RuntimeError, ValueError, OSError):
+        raise InputError(f"{path} is not an OpenEXR file that can be read.") from None
+    grouped: dict[str, dict[str, np.ndarray]] = {}
+    for name, plane in channels.items():
+        layer, _, letter = name.rpartition(".")
+        grouped.setdefault(layer or "composite", {})[letter] = plane
+    layers = {
+        layer: np.stack([planes[letter] for letter in "RGB"], axis=-1) if planes.keys() >= set("RGB") else planes["Y"]
+        for layer, planes in grouped.items()
+        if planes.keys() >= set("RGB") or "Y" in planes
+    }
+    metadata = {key.removeprefix(PREFIX): str(value) for key, value in header.items() if key.startswith(PREFIX)}
+    return layers, metadata

@@ -1,0 +1,39 @@
+"""What there is: scenes, techniques and their parts, suites, meshes."""
+
+from __future__ import annotations
+
+from rich.table import Table
+
+from experiments.suite import shipped as shipped_suites
+from gpu_impl.techniques import AIRLIGHT_MODELS, TECHNIQUES, VISIBILITIES
+from scenes.catalogue import FOLDER, shipped
+from scenes.mesh_files import available
+
+
+def listing() -> list[Table]:
+    """One table per kind."""
+    return [
+        _table("scenes", ("name", "file"), [(name, f"{FOLDER.name}/{name}.xml") for name in shipped()]),
+        _table(
+            "techniques (any other cell runs as visibility+airlight)",
+            ("name", "visibility", "airlight model", "steps", "shadow map"),
+            [(t.name, t.visibility, t.airlight, str(t.steps), str(t.shadow_map)) for t in TECHNIQUES.values()],
+        ),
+        _table("visibilities", ("name", "what"), [(name, part.what) for name, part in VISIBILITIES.items()]),
+        _table(
+            "airlight models",
+            ("name", "what", "phase functions"),
+            [(name, part.what, ", ".join(part.phases or ("any",))) for name, part in AIRLIGHT_MODELS.items()],
+        ),
+        _table("suites", ("name",), [(name,) for name in shipped_suites()]),
+        _table("meshes", ("name", "from", "path"), [(m.name, m.origin, str(m.path)) for m in available()]),
+    ]
+
+
+def _table(title: str, headings: tuple[str, ...], rows: list[tuple[str, ...]]) -> Table:
+    table = Table(title=title, title_justify="left")
+    for heading in headings:
+        table.add_column(heading, overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    return table

@@ -1,0 +1,88 @@
+"""How far a picture is from its reference, in numbers that say what they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from experiments.flip import hdr_flip
+from scenes.errors import InputError
+
+Image = NDArray[np.floating]
+# A pixel darker than this share of the reference's mean counts as bright as that: in an umbra relative errors of next
+# to nothing would otherwise decide. relMSE's epsilon is its square.
+DARKEST = 0.01
+
+
+@dataclass(frozen=True)
+class Metrics:
+    """Errors of one layer, over all pixels and channels. None where a number has no meaning: a black reference.
+
+    Attributes
+    ----------
+    rel_mse : float            mean of (t - r)^2 / (r^2 + eps), eps = (0.01 mean r)^2
+    rmse : float               root of the mean of (t - r)^2 [radiance]
+    bias : float               sqrt(max(0, MSE - mean variance of the reference)) [radiance]: the technique's own error
+    mean_rel : float           mean of (t - r) / max(r, 0.01 mean r)
+    rel_50, rel_95, rel_99     percentiles of |t - r| / max(r, 0.01 mean r)
+    image_mean_rel : float     (mean t - mean r) / mean r
+    flip : float               mean HDR-FLIP (Andersson et al. 2021), 0 to 1
+    """
+
+    rel_mse: float | None
+    rmse: float
+    bias: float
+    mean_rel: float | None
+    rel_50: float | None
+    rel_95: float | None
+    rel_99: float | None
+    image_mean_rel: float | None
+    flip: float | None
+
+
+def signed_relative_error(test: Image, reference: Image) -> NDArray[np.float64]:
+    """(t - r) / max(r, 0.01 mean r), same shape as the images."""
+    reference = np.asarray(reference, np.float64)
+    return (np.asarray(test, np.float64) - reference) / np.maximum(reference, DARKEST * reference.mean())
+
+
+def measure(test: Image, reference: Image, standard_error: Image | None = None) -> Metrics:
+    """Compare a picture with its reference.
+
+    Parameters
+    ----------
+    test, reference : (H, W, 3)    linear Rec.709
+    standard_error : (H, W, 3)     of the reference; None where it is not known, and then nothing is subtracted
+
+    Raises
+    ------
+    InputError
+        The sizes differ, or a picture holds values that are not finite.
+    """
+    test, reference = np.asarray(test, np.float64), np.asarray(reference, np.float64)
+    if test.shape != reference.shape:
+        sizes = " and ".join(f"{image.shape[1]} x {image.shape[0]}" for image in (test, reference))
+        raise InputError(f"The pictures have different sizes, {sizes} pixels; render them at the same size.")
+    for name, image in (("picture", test), ("reference", reference)):
+        if not np.isfinite(image).all():
+            raise InputError(f"The {name} holds values that are not finite; nothing can be measured on it.")
+    squared = (test - reference) ** 2
+    variance = 0.0 if standard_error is None else float(np.mean(np.square(standard_error)))
+    rmse, bias = float(np.sqrt(squared.mean())), float(np.sqrt(max(0.0, squared.mean() - variance)))
+    if not reference.any():
+        return Metrics(None, rmse, bias, None, None, None, None, None, None)
+    relative = signed_relative_error(test, reference)
+    percentiles = np.percentile(np.abs(relative), [50, 95, 99])
+    return Metrics(
+        rel_mse=float(np.mean(squared / (reference**2 + (DARKEST * reference.mean()) ** 2))),
+        rmse=rmse,
+        bias=bias,
+        mean_rel=float(relative.mean()),
+        rel_50=float(percentiles[0]),
+        rel_95=float(percentiles[1]),
+        rel_99=float(percentiles[2]),
+        image_mean_rel=float(test.mean() / reference.mean() - 1),
+        flip=hdr_flip(test, reference),
+    )

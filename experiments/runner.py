@@ -1,0 +1,155 @@
+"""Runs a suite: each scene's reference once, each technique beside it, every number and picture kept."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict
+from datetime import datetime
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from experiments.metrics import Metrics, measure
+from experiments.pictures import LAYERS, write_case
+from experiments.provenance import describe_frame, describe_reference, describe_scene
+from experiments.sheet import prepare_sheets, summary, write_sheet
+from experiments.suite import Suite
+from gpu_impl.frame import Frame
+from gpu_impl.renderer import Renderer
+from reference.convergence import Progress
+from reference.estimate import Reference, estimate_reference
+from scenes.errors import InputError
+from scenes.loader import load
+from scenes.model import Scene
+
+Row = dict[str, Any]
+
+
+class Watcher:
+    """Told how a run goes; the terminal shows it, tests ignore it."""
+
+    def case(self, name: str, number: int, total: int) -> None:
+        """Case `number` of `total` begins."""
+
+    def scene(self, scene: Scene) -> None:
+        """A scene was loaded."""
+
+    def reference(self, progress: Progress) -> None:
+        """A reference got further."""
+
+
+def run_suite(name: str, suite: Suite, parent: Path, watcher: Watcher) -> tuple[list[Row], Path]:
+    """Run every case.
+
+    Parameters
+    ----------
+    name : of the suite
+    parent : where the folder of this run is made
+
+    Returns
+    -------
+    rows : one per case and layer
+    folder : with results.csv, results.parquet, and an EXR and a sheet per case
+
+    Raises
+    ------
+    InputError
+        A scene, a technique or the folder cannot be used.
+    """
+    techniques = [choice.technique() for choice in suite.techniques]
+    folder = _make_folder(parent, name)
+    rows: list[Row] = []
+    total, number = len(suite.scenes) * len(techniques), 0
+    # matplotlib takes as long as OpenGL: a second process draws one case's sheet while the next case renders
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as drawer:
+        sheets = [drawer.submit(prepare_sheets)]
+        for scene_name in suite.scenes:
+            scene = load(scene_name, size=suite.size, **suite.parameters)
+            watcher.scene(scene)
+            watcher.case(f"{scene.name}: reference", number, total)
+            reference = estimate_reference(scene, suite.reference.goal(), watcher.reference)
+            with Renderer(scene) as renderer:
+                for technique in techniques:
+                    watcher.case(f"{scene.name}: {technique.name}", number, total)
+                    frame = renderer.render(technique)
+                    case = keep_case(folder, scene, frame, reference)
+                    sheets.append(drawer.submit(write_sheet, *_sheet(folder, scene, frame, reference, case)))
+                    rows += case
+                    # each finished case is on disk before the next begins
+                    write_tables(folder, rows)
+                    number += 1
+        for sheet in sheets:
+            sheet.result()
+    watcher.case("done", total, total)
+    return rows, folder
+
+
+def keep_case(folder: Path, scene: Scene, frame: Frame, reference: Reference) -> list[Row]:
+    """Measure one case and write its EXR; a row per layer."""
+    write_case(folder / f"{case_name(scene, frame)}.exr", scene, frame, reference)
+    return [
+        _row(
+            scene,
+            frame,
+            reference,
+            layer,
+            measure(getattr(frame, layer), getattr(reference, layer), reference.standard_error(layer)),
+        )
+        for layer in LAYERS
+    ]
+
+
+def case_name(scene: Scene, frame: Frame) -> str:
+    """Name of a case's files."""
+    return f"{scene.name}-{frame.technique.name}"
+
+
+def write_tables(folder: Path, rows: list[Row]) -> None:
+    """Write all rows as CSV and Parquet."""
+    import polars
+
+    table = polars.DataFrame(rows, infer_schema_length=None)
+    for ending, write in ((".csv", table.write_csv), (".parquet", table.write_parquet)):
+        temporary = folder / f"results{ending}.part"
+        write(temporary)
+        temporary.replace(folder / f"results{ending}")
+
+
+def _row(scene: Scene, frame: Frame, reference: Reference, layer: str, metrics: Metrics) -> Row:
+    return {
+        "scene": scene.name,
+        "technique": frame.technique.name,
+        "layer": layer,
+        "phase": scene.phase.name,
+        **asdict(metrics),
+        **describe_scene(scene),
+        **describe_frame(frame),
+        **describe_reference(reference),
+    }
+
+
+def _sheet(folder: Path, scene: Scene, frame: Frame, reference: Reference, rows: list[Row]) -> tuple[Any, ...]:
+    """Arguments of `write_sheet` for the scattering layer of a case."""
+    title = f"{scene.name}, {frame.technique.name}: scattering, {scene.camera.width} x {scene.camera.height}"
+    stand_ins = f"stand-in for {', '.join(scene.stand_ins)}" if scene.stand_ins else ""
+    path = folder / f"{case_name(scene, frame)}.png"
+    row = next(row for row in rows if row["layer"] == "scattering")
+    return path, title, frame.scattering, reference.scattering, summary(row), stand_ins
+
+
+def _make_folder(parent: Path, name: str) -> Path:
+    """Make a new folder for this run; none before it is touched."""
+    stem = f"{name}-{datetime.now():%Y%m%d-%H%M%S}"
+    try:
+        parent.mkdir(parents=True, exist_ok=True)
+        for attempt in range(1000):
+            folder = parent / (f"{stem}-{attempt}" if attempt else stem)
+            try:
+                folder.mkdir()
+            except FileExistsError:
+                continue
+            return folder
+    except OSError as error:
+        raise InputError(f"{parent} cannot hold the results ({os.strerror(error.errno or 0)}); choose --out.") from None
+    raise InputError(f"{parent} is full of runs of {name}; remove some or choose another --out.")

@@ -1,0 +1,172 @@
+"""What a person sees in the terminal: progress, tables, notices."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from types import TracebackType
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from experiments.metrics import Metrics
+from experiments.runner import Row, Watcher
+from reference.convergence import Progress as Convergence
+from reference.estimate import Reference
+from scenes.llvm import choose_llvm
+from scenes.mitsuba_setup import mitsuba
+from scenes.model import Scene
+
+
+def _console() -> Console:
+    """Standard output; where no terminal says how wide it is, wide enough for the table of results."""
+    found = Console()
+    return found if found.is_terminal else Console(width=max(found.width, 124))
+
+
+console = _console()
+# notices go where they do not disturb --json
+notices = Console(stderr=True)
+
+
+class TerminalWatcher(Watcher):
+    """Progress bars for a run or for one reference; a context manager."""
+
+    def __init__(self, rel_error: float) -> None:
+        self._rel_error = rel_error
+        self._progress = Progress(
+            SpinnerColumn(),
+            TextColumn("{task.description:<34}"),
+            BarColumn(),
+            TaskProgressColumn(),
+            TimeElapsedColumn(),
+            TextColumn("{task.fields[note]}"),
+            console=notices,
+        )
+        self._cases: Any = None
+        self._estimate: Any = None
+
+    def __enter__(self) -> TerminalWatcher:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._progress.stop()
+
+    def case(self, name: str, number: int, total: int) -> None:
+        """Move the bar of cases."""
+        if self._cases is None:
+            self._cases = self._progress.add_task("", total=total, note="")
+        left = ""
+        if 0 < number < total:
+            seconds = self._progress.tasks[self._cases].elapsed or 0.0
+            left = f"about {seconds / number * (total - number):.0f} s left"
+        self._progress.update(self._cases, description=name, completed=number, note=left)
+
+    def scene(self, scene: Scene) -> None:
+        """Say which meshes are stand-ins."""
+        announce_stand_ins(scene)
+
+    def reference(self, progress: Convergence) -> None:
+        """Move the bar of the reference: passes done of those that the present error asks for."""
+        if self._estimate is None:
+            self._estimate = self._progress.add_task("  reference", total=1.0, note="")
+        share = progress.seconds / max(progress.seconds + progress.seconds_left, 1e-9)
+        note = f"error {progress.rel_error:.2%} of {self._rel_error:.2%}, about {progress.seconds_left:.0f} s left"
+        self._progress.update(self._estimate, completed=share, note=note)
+
+
+def announce_stand_ins(scene: Scene) -> None:
+    """Say which meshes are not the real ones, and the cure."""
+    if scene.stand_ins:
+        notices.print(
+            f"[yellow]{scene.name}: a procedural stand-in serves for {', '.join(scene.stand_ins)}; "
+            "set AIRLIGHT_MESH_DIR to a folder with the mesh to use the real one.[/yellow]",
+            highlight=False,
+        )
+
+
+def announce_variant() -> None:
+    """Say so where the reference has to do without LLVM, or without the LLVM that was asked for."""
+    choice, variant = choose_llvm(), mitsuba().variant()
+    if choice.asked_for and choice.rejected and choice.rejected[0].path == choice.asked_for:
+        notices.print(
+            f"[yellow]DRJIT_LIBLLVM_PATH names {choice.asked_for}, which {choice.rejected[0].reason}; "
+            f"{'using ' + choice.usable.path if choice.usable else 'no other was found'}.[/yellow]",
+            highlight=False,
+        )
+    if variant == "scalar_rgb":
+        notices.print(
+            "[yellow]No LLVM that Dr.Jit can use: the reference comes from Mitsuba's C++ volpath in scalar_rgb, slower "
+            "and averaged over pixels instead of at their centres. `make setup` installs one; `airlight doctor` says "
+            "more.[/yellow]",
+            highlight=False,
+        )
+
+
+def announce_accuracy(reference: Reference, asked: float) -> None:
+    """Say so where a reference ran out of time."""
+    estimate = reference.estimate
+    if not estimate.reached:
+        notices.print(
+            f"[yellow]The reference stopped at its time limit with a relative standard error of "
+            f"{estimate.rel_error:.2%} where {asked:.2%} was asked for.[/yellow]",
+            highlight=False,
+        )
+
+
+def results_table(rows: list[Row]) -> Table:
+    """Errors of each case: the scattering layer, and HDR-FLIP of the composite beside it."""
+    table = Table(
+        title="Scattering: errors against the reference",
+        title_justify="left",
+        caption_justify="left",
+        box=SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+    )
+    # in a narrow terminal the names fold; the numbers never do
+    table.add_column("scene", overflow="fold")
+    table.add_column("technique", overflow="fold")
+    for heading in ("median", "95 %", "99 %", "mean +-", "relMSE", "RMSE", "bias", "FLIP", "FLIP all", "noise"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    composite = {(row["scene"], row["technique"]): row["flip"] for row in rows if row["layer"] == "composite"}
+    for row in rows:
+        if row["layer"] != "scattering":
+            continue
+        table.add_row(
+            row["scene"] + ("*" if row["stand_ins"] else ""),
+            row["technique"],
+            f"{row['rel_50']:.3%}",
+            f"{row['rel_95']:.3%}",
+            f"{row['rel_99']:.3%}",
+            f"{row['mean_rel']:+.3%}",
+            f"{row['rel_mse']:.1e}",
+            f"{row['rmse']:.1e}",
+            f"{row['bias']:.1e}",
+            f"{row['flip']:.4f}",
+            f"{composite[row['scene'], row['technique']]:.4f}",
+            f"{float(row['rel_error']):.2%}",
+        )
+    first = rows[0]
+    starred = " * with stand-in meshes." if any(row["stand_ins"] for row in rows) else ""
+    table.caption = (
+        "median, 95 %, 99 % of |t - r| / max(r, 1 % of the mean r); mean +- of the same with its sign. "
+        "bias: RMSE without the reference's noise. FLIP all: of the composite. noise: relative standard error of the "
+        "reference, 95 %."
+        f"{starred}\n{first['gl_renderer']}; reference {first['estimator']}, {first['variant']}."
+    )
+    return table
+
+
+def metrics_table(layer: str, metrics: Metrics) -> Table:
+    """All metrics of one layer, a line each."""
+    table = Table(title=f"{layer} against the reference", title_justify="left")
+    table.add_column("metric")
+    table.add_column("value", justify="right")
+    for name, value in asdict(metrics).items():
+        table.add_row(name, "-" if value is None else f"{value:.6g}")
+    return table

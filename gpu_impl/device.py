@@ -1,0 +1,77 @@
+"""An OpenGL context with the programs compiled on it, each once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from gpu_impl.context import gl_info, shared_context
+from gpu_impl.quadrature_nodes import gauss_legendre_glsl
+from gpu_impl.shader_source import ShaderSource, compile_program
+
+QUADRATURE_NODES = 24
+GENERATED = {"<gauss-legendre>": gauss_legendre_glsl(QUADRATURE_NODES)}
+
+
+class Device:
+    """Compiles programs and runs full-screen passes.
+
+    Parameters
+    ----------
+    context : moderngl.Context; the process's own by default
+    """
+
+    def __init__(self, context: Any | None = None) -> None:
+        self.context = context or shared_context()
+        self.info = gl_info(self.context)
+        self.largest_texture: int = self.context.info["GL_MAX_TEXTURE_SIZE"]
+        self._programs: dict[tuple, Any] = {}
+
+    def program(
+        self,
+        fragment: str,
+        vertex: str = "fullscreen.vert.glsl",
+        defines: Mapping[str, object] | None = None,
+        includes: Mapping[str, str] | None = None,
+    ) -> Any:
+        """Return the program of two shader files below `shaders/`; see `ShaderSource` for the rest."""
+        defines, includes = defines or {}, includes or {}
+        key = (vertex, fragment, *sorted(defines.items()), *sorted(includes.items()))
+        if key not in self._programs:
+            self._programs[key] = compile_program(
+                self.context,
+                ShaderSource(vertex),
+                ShaderSource(fragment, defines, includes, GENERATED),
+            )
+        return self._programs[key]
+
+    def texture(self, size: tuple[int, int], components: int) -> Any:
+        """Make a float32 texture that is read without interpolation."""
+        texture = self.context.texture(size, components, dtype="f4")
+        texture.filter = (self.context.NEAREST, self.context.NEAREST)
+        return texture
+
+    def clear(self, texture: Any) -> None:
+        """Set a texture to zero."""
+        target = self.context.framebuffer(color_attachments=[texture])
+        target.clear()
+        target.release()
+
+    def fill(self, program: Any, texture: Any, add: bool = False) -> None:
+        """Run a program on every pixel of a texture, in place of what is there or added to it."""
+        target = self.context.framebuffer(color_attachments=[texture])
+        target.use()
+        if add:
+            self.context.enable(self.context.BLEND)
+            self.context.blend_func = self.context.ONE, self.context.ONE
+        array = self.context.vertex_array(program, [])
+        array.render(vertices=3)
+        self.context.disable(self.context.BLEND)
+        array.release()
+        target.release()
+
+    def release(self) -> None:
+        """Give the programs back."""
+        for program in self._programs.values():
+            program.release()
+        self._programs.clear()

@@ -1,0 +1,22 @@
+"""The surface pass: "Render Scene" of Weng 2010, Figure 1.3."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gpu_impl.device import Device
+from gpu_impl.geometry import GBuffer, camera_uniforms
+from gpu_impl.light_uniforms import light_uniforms
+from gpu_impl.shader_source import set_uniforms
+from gpu_impl.shadow_map import ShadowMap, tile_count
+from scenes.model import Light, Scene
+
+
+def add_surface(
+    device: Device, target: Any, scene: Scene, light: Light, gbuffer: GBuffer, shadow_map: ShadowMap
+) -> None:
+    """Add one light's direct light on diffuse surfaces, attenuated on both legs, to `target`."""
+    program = device.program("surface.frag.glsl", defines={"GREY": 1, "TILES": tile_count(light)})
+    set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light))
+    set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))
+    device.fill(program, target, add=True)
