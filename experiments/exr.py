@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -37,6 +38,7 @@ def write_exr(path: Path, layers: Mapping[str, np.ndarray], metadata: Mapping[st
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     header |= {PREFIX + key: str(value) for key, value in metadata.items()}
     path = Path(path)
+    check_writable(path)
     temporary = None
     try:
         handle, name = tempfile.mkstemp(dir=path.parent, suffix=".exr.part")
@@ -54,8 +56,17 @@ def write_exr(path: Path, layers: Mapping[str, np.ndarray], metadata: Mapping[st
 def check_writable(path: Path) -> None:
     """Raise InputError where `path` could not be written: better before the work than after it."""
     folder = path.absolute().parent
-    if path.is_dir():
-        raise InputError(f"{path} is a folder; name a file in it.")
+    try:
+        mode = path.stat().st_mode
+        if stat.S_ISDIR(mode):
+            raise InputError(f"{path} is a folder; name a file in it.")
+        # a device would be replaced by the file: whoever is root would lose /dev/null
+        if not stat.S_ISREG(mode):
+            raise InputError(f"{path} is no ordinary file; choose another place.")
+    except FileNotFoundError:
+        pass
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path} cannot be written ({error}); choose another place.") from None
     if not folder.is_dir():
         raise InputError(f"The folder {folder} does not exist; make it first.")
     if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
@@ -77,22 +88,27 @@ def read_exr(path: Path) -> tuple[Layers, dict[str, str]]:
     """
     import OpenEXR
 
-    if not Path(path).is_file():
+    if not os.path.isfile(path):
         raise InputError(f"There is no file {path}.")
     try:
         with OpenEXR.File(str(path), separate_channels=True) as file:
             channels = {name: np.array(channel.pixels, np.float32) for name, channel in file.channels().items()}
-            header = file.header()
+            # a copy: the file empties its own when it is closed
+            header = dict(file.header())
+        layers = _grouped(channels)
     except (RuntimeError, ValueError, OSError):
         raise InputError(f"{path} is not an OpenEXR file that can be read.") from None
+    metadata = {key.removeprefix(PREFIX): str(value) for key, value in header.items() if key.startswith(PREFIX)}
+    return layers, metadata
+
+
+def _grouped(channels: Mapping[str, np.ndarray]) -> Layers:
     grouped: dict[str, dict[str, np.ndarray]] = {}
     for name, plane in channels.items():
         layer, _, letter = name.rpartition(".")
         grouped.setdefault(layer or "composite", {})[letter] = plane
-    layers = {
+    return {
         layer: np.stack([planes[letter] for letter in "RGB"], axis=-1) if planes.keys() >= set("RGB") else planes["Y"]
         for layer, planes in grouped.items()
         if planes.keys() >= set("RGB") or "Y" in planes
     }
-    metadata = {key.removeprefix(PREFIX): str(value) for key, value in header.items() if key.startswith(PREFIX)}
-    return layers, metadata

@@ -19,7 +19,7 @@ def hdr_flip(test: NDArray[np.floating], reference: NDArray[np.floating]) -> flo
 
     Parameters
     ----------
-    test, reference : (H, W, 3)    linear Rec.709, not negative
+    test, reference : (H, W, 3)    linear Rec.709; negative values count as 0
     """
     pair = [np.ascontiguousarray(image, np.float32) for image in (reference, test)]
     digest = hashlib.sha256(version("flip-evaluator").encode())
@@ -38,7 +38,8 @@ def _evaluate(reference: NDArray[np.float32], test: NDArray[np.float32]) -> floa
     import flip_evaluator
 
     # inputsRGB for HDR means linear Rec.709; no colour map, but the mean
-    return float(flip_evaluator.evaluate(reference, np.maximum(test, 0), "HDR", True, False, True)[1])
+    pair = np.maximum(reference, 0), np.maximum(test, 0)
+    return float(flip_evaluator.evaluate(*pair, "HDR", True, False, True)[1])
 
 
 def _remember(path: Path, value: float) -> None:

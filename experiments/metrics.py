@@ -65,13 +65,14 @@ def measure(test: Image, reference: Image, standard_error: Image | None = None) 
     if test.shape != reference.shape:
         sizes = " and ".join(f"{image.shape[1]} x {image.shape[0]}" for image in (test, reference))
         raise InputError(f"The pictures have different sizes, {sizes} pixels; render them at the same size.")
-    for name, image in (("picture", test), ("reference", reference)):
+    error = np.zeros(1) if standard_error is None else np.asarray(standard_error, np.float64)
+    for name, image in (("picture", test), ("reference", reference), ("reference's standard error", error)):
         if not np.isfinite(image).all():
             raise InputError(f"The {name} holds values that are not finite; nothing can be measured on it.")
     squared = (test - reference) ** 2
-    variance = 0.0 if standard_error is None else float(np.mean(np.square(standard_error)))
+    variance = float(np.mean(np.square(error)))
     rmse, bias = float(np.sqrt(squared.mean())), float(np.sqrt(max(0.0, squared.mean() - variance)))
-    if not reference.any():
+    if not reference.mean() > 0:
         return Metrics(None, rmse, bias, None, None, None, None, None, None)
     relative = signed_relative_error(test, reference)
     percentiles = np.percentile(np.abs(relative), [50, 95, 99])

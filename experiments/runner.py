@@ -17,6 +17,7 @@ from experiments.sheet import prepare_sheets, summary, write_sheet
 from experiments.suite import Suite
 from gpu_impl.frame import Frame
 from gpu_impl.renderer import Renderer
+from gpu_impl.techniques import find_technique
 from reference.convergence import Progress
 from reference.estimate import Reference, estimate_reference
 from scenes.errors import InputError
@@ -58,14 +59,18 @@ def run_suite(name: str, suite: Suite, parent: Path, watcher: Watcher) -> tuple[
         A scene, a technique or the folder cannot be used.
     """
     techniques = [choice.technique() for choice in suite.techniques]
+    # what cannot be used is said before the first reference is estimated
+    scenes = [load(scene, size=suite.size, **suite.parameters) for scene in suite.scenes]
+    for scene in scenes:
+        for technique in techniques:
+            technique.check_phase(scene.phase)
     folder = _make_folder(parent, name)
     rows: list[Row] = []
     total, number = len(suite.scenes) * len(techniques), 0
     # matplotlib takes as long as OpenGL: a second process draws one case's sheet while the next case renders
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as drawer:
         sheets = [drawer.submit(prepare_sheets)]
-        for scene_name in suite.scenes:
-            scene = load(scene_name, size=suite.size, **suite.parameters)
+        for scene in scenes:
             watcher.scene(scene)
             watcher.case(f"{scene.name}: reference", number, total)
             reference = estimate_reference(scene, suite.reference.goal(), watcher.reference)
@@ -101,8 +106,15 @@ def keep_case(folder: Path, scene: Scene, frame: Frame, reference: Reference) ->
 
 
 def case_name(scene: Scene, frame: Frame) -> str:
-    """Name of a case's files."""
-    return f"{scene.name}-{frame.technique.name}"
+    """Name of a case's files; settings that are not the technique's own are part of it."""
+    technique = frame.technique
+    own = find_technique(technique.name)
+    changed = [
+        f"-{setting}-{getattr(technique, setting)}"
+        for setting in ("steps", "shadow_map", "downsample")
+        if getattr(technique, setting) != getattr(own, setting)
+    ]
+    return f"{scene.name}-{technique.name}{''.join(changed)}"
 
 
 def write_tables(folder: Path, rows: list[Row]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -77,9 +79,12 @@ class Sheet:
         self._pictures[3].set_clim(0, float(np.percentile(absolute, 99.9)) or 1.0)
         self._heading.set_text(f"{title}\n{below}")
         self._note.set_text(note)
-        temporary = path.with_suffix(".part")
+        # a name that no file of the user's can have
+        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".png.part")
+        os.close(handle)
         self._figure.savefig(temporary, format="png")
-        temporary.replace(path)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
 
 
 def summary(row: Mapping[str, Any]) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from gpu_impl.techniques import Technique, find_technique
 from reference.goal import Goal
@@ -53,6 +54,23 @@ class Suite(_Strict):
     parameters: dict[str, str | int | float] = {}
     reference: ReferenceChoice = ReferenceChoice()
 
+    @field_validator("scenes")
+    @classmethod
+    def _names_differ(cls, scenes: list[str]) -> list[str]:
+        names = [Path(scene).stem for scene in scenes]
+        for name in names:
+            # the files of a case are called after its scene
+            if names.count(name) > 1:
+                raise ValueError(f"two scenes are called {name}")
+        return scenes
+
+    @field_validator("parameters")
+    @classmethod
+    def _size_is_apart(cls, parameters: dict[str, str | int | float]) -> dict[str, str | int | float]:
+        if "size" in parameters:
+            raise ValueError("size is a key of the suite itself, and no scene can have a parameter of that name")
+        return parameters
+
 
 def shipped() -> list[str]:
     """Names of the shipped suites."""
@@ -71,11 +89,11 @@ def load_suite(suite: str) -> tuple[str, Suite]:
     InputError
         The file is missing, is not TOML, or holds a key or a value that a suite does not take.
     """
-    path = Path(suite) if Path(suite).is_file() else FOLDER / f"{suite}.toml"
-    if not path.is_file():
+    path = Path(suite) if os.path.isfile(suite) else FOLDER / f"{suite}.toml"
+    if not os.path.isfile(path):
         raise InputError(f"There is no suite '{suite}': give the path of a TOML file or one of {', '.join(shipped())}.")
     try:
-        loaded = Suite.model_validate(tomllib.loads(path.read_text()))
+        loaded = Suite.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{path} is not a suite: {error}.") from None
     except ValidationError as error:

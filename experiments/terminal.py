@@ -15,7 +15,7 @@ from experiments.metrics import Metrics
 from experiments.runner import Row, Watcher
 from reference.convergence import Progress as Convergence
 from reference.estimate import Reference
-from scenes.llvm import choose_llvm
+from scenes.llvm import LlvmChoice, choose_llvm
 from scenes.mitsuba_setup import mitsuba
 from scenes.model import Scene
 
@@ -49,18 +49,23 @@ class TerminalWatcher(Watcher):
         self._estimate: Any = None
 
     def __enter__(self) -> TerminalWatcher:
-        self._progress.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._progress.stop()
+        if self._progress.live.is_started:
+            self._progress.stop()
+
+    def _bar(self, description: str, total: float) -> Any:
+        # the first bar opens the display: a command that is refused before it leaves no empty line
+        self._progress.start()
+        return self._progress.add_task(description, total=total, note="")
 
     def case(self, name: str, number: int, total: int) -> None:
         """Move the bar of cases."""
         if self._cases is None:
-            self._cases = self._progress.add_task("", total=total, note="")
+            self._cases = self._bar("", total)
         left = ""
         if 0 < number < total:
             seconds = self._progress.tasks[self._cases].elapsed or 0.0
@@ -74,7 +79,7 @@ class TerminalWatcher(Watcher):
     def reference(self, progress: Convergence) -> None:
         """Move the bar of the reference: passes done of those that the present error asks for."""
         if self._estimate is None:
-            self._estimate = self._progress.add_task("  reference", total=1.0, note="")
+            self._estimate = self._bar("  reference", 1.0)
         share = progress.seconds / max(progress.seconds + progress.seconds_left, 1e-9)
         note = f"error {progress.rel_error:.2%} of {self._rel_error:.2%}, about {progress.seconds_left:.0f} s left"
         self._progress.update(self._estimate, completed=share, note=note)
@@ -101,11 +106,16 @@ def announce_variant() -> None:
         )
     if variant == "scalar_rgb":
         notices.print(
-            "[yellow]No LLVM that Dr.Jit can use: the reference comes from Mitsuba's C++ volpath in scalar_rgb, slower "
-            "and averaged over pixels instead of at their centres. `make setup` installs one; `airlight doctor` says "
-            "more.[/yellow]",
+            "[yellow]The reference comes from Mitsuba's C++ volpath in scalar_rgb, slower and averaged over pixels "
+            f"instead of at their centres: {_why_scalar(choice)}.[/yellow]",
             highlight=False,
         )
+
+
+def _why_scalar(choice: LlvmChoice) -> str:
+    if choice.usable:
+        return "AIRLIGHT_MITSUBA_VARIANT asks for it"
+    return "there is no LLVM that Dr.Jit can use (`make setup` installs one, `airlight doctor` says more)"
 
 
 def announce_accuracy(reference: Reference, asked: float) -> None:
@@ -133,7 +143,7 @@ def results_table(rows: list[Row]) -> Table:
     table.add_column("technique", overflow="fold")
     for heading in ("median", "95 %", "99 %", "mean +-", "relMSE", "RMSE", "bias", "FLIP", "FLIP all", "noise"):
         table.add_column(heading, justify="right", no_wrap=True)
-    composite = {(row["scene"], row["technique"]): row["flip"] for row in rows if row["layer"] == "composite"}
+    composite = {_case(row): row["flip"] for row in rows if row["layer"] == "composite"}
     for row in rows:
         if row["layer"] != "scattering":
             continue
@@ -148,7 +158,7 @@ def results_table(rows: list[Row]) -> Table:
             f"{row['rmse']:.1e}",
             f"{row['bias']:.1e}",
             f"{row['flip']:.4f}",
-            f"{composite[row['scene'], row['technique']]:.4f}",
+            f"{composite[_case(row)]:.4f}",
             f"{float(row['rel_error']):.2%}",
         )
     first = rows[0]
@@ -160,6 +170,10 @@ def results_table(rows: list[Row]) -> Table:
         f"{starred}\n{first['gl_renderer']}; reference {first['estimator']}, {first['variant']}."
     )
     return table
+
+
+def _case(row: Row) -> tuple[str, ...]:
+    return tuple(str(row[key]) for key in ("scene", "technique", "steps", "shadow_map", "downsample"))
 
 
 def metrics_table(layer: str, metrics: Metrics) -> Table:

@@ -83,7 +83,7 @@ class Technique:
         if allowed is not None and phase.name not in allowed:
             raise InputError(
                 f"The airlight model {self.airlight} takes the phase function {' or '.join(allowed)}, and the scene "
-                f"has {phase.name}: use --airlight quadrature, or set the scene's phase function."
+                f"has {phase.name}: use {self.visibility}+quadrature, or set the scene's phase function."
             )
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
 import tempfile
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -43,10 +43,22 @@ def load(recipe: Recipe) -> tuple[Arrays, Recipe] | None:
             record = json.loads(str(entry["record"]))
         if record["recipe"] != recipe:
             raise ValueError("the recipe is another one")
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        path.replace(path.with_suffix(".damaged"))
+    except Exception:
+        # what zipfile, numpy and json raise on damaged bytes is of many types (NotImplementedError, struct.error, ...)
+        with contextlib.suppress(OSError):  # a folder that only others may write keeps it
+            path.replace(path.with_suffix(".damaged"))
         return None
     return arrays, record
+
+
+def check_writable() -> None:
+    """Raise InputError where an entry could not be kept: better before the estimate than after it."""
+    try:
+        folder().mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder()):
+            return
+    except OSError as error:
+        raise _unwritable(error) from None
 
 
 def store(recipe: Recipe, arrays: Arrays, record: Recipe) -> None:
@@ -68,10 +80,14 @@ def store(recipe: Recipe, arrays: Arrays, record: Recipe) -> None:
     except OSError as error:
         if temporary:
             temporary.unlink(missing_ok=True)
-        raise InputError(
-            f"The reference cannot be kept in {path.parent} ({error.strerror}): make room there, make it writable, or "
-            "set XDG_CACHE_HOME to another folder."
-        ) from None
+        raise _unwritable(error) from None
+
+
+def _unwritable(error: OSError) -> InputError:
+    return InputError(
+        f"The reference cannot be kept in {folder()} ({error.strerror}): make room there, make it writable, or set "
+        "XDG_CACHE_HOME to another folder."
+    )
 
 
 def _path(recipe: Recipe) -> Path:

@@ -12,8 +12,11 @@ from reference.estimators import Estimator, Image
 from reference.goal import Goal
 from scenes.errors import InputError
 
-# fewer passes give no honest error bar: the spread of 8 is itself known to a quarter
-FEWEST_PASSES = 8
+# An error bar from few passes is itself uncertain. From 32, |z| > 4 by chance is a matter of 4e-4 (Student's t); from 8
+# it would be 5e-3, and every large image would seem to disagree somewhere.
+FEWEST_PASSES = 32
+# a time limit stops earlier, with the error bar that there is
+FEWEST_IN_TIME = 8
 PERCENTILE = 95
 # pixels darker than this share of the image mean count as if they were as bright as it: in an umbra the relative
 # error of next to nothing would otherwise decide
@@ -105,7 +108,7 @@ def converge(estimator: Estimator, goal: Goal, report: Callable[[Progress], None
             left = min(seconds * (needed / passes - 1), goal.time_limit - seconds)
             report(Progress(passes, present, seconds, max(left, 0.0)))
         reached = passes >= FEWEST_PASSES and present <= goal.rel_error
-        if reached or (seconds > goal.time_limit and passes >= FEWEST_PASSES):
+        if reached or (seconds > goal.time_limit and passes >= FEWEST_IN_TIME):
             break
     fixed = estimator.fixed()
     for layer, image in fixed.items():

@@ -11,7 +11,7 @@ import numpy as np
 
 from reference import cache
 from reference.convergence import Estimate, Progress, converge
-from reference.estimators import Estimator, Volpath, default_estimator
+from reference.estimators import Estimator, default_estimator
 from reference.goal import Goal
 from reference.integrator import mi
 from scenes.model import Scene
@@ -76,15 +76,12 @@ def estimate_reference(
     recipe = _recipe(scene, estimator, goal)
     if use_cache and (entry := cache.load(recipe)):
         return Reference(_unpack(*entry), recipe, estimator.pixel_filter, from_cache=True)
+    if use_cache:
+        cache.check_writable()
     estimate = converge(estimator, goal, report)
     if use_cache:
         cache.store(recipe, *_pack(estimate))
     return Reference(estimate, recipe, estimator.pixel_filter, from_cache=False)
-
-
-def estimate_volpath(scene: Scene, goal: Goal, report: Callable[[Progress], None] | None = None) -> Estimate:
-    """Estimate the same scene by Mitsuba's own `volpath`, as a check; never cached, so that it is done each time."""
-    return converge(Volpath(scene), goal, report)
 
 
 def _recipe(scene: Scene, estimator: Estimator, goal: Goal) -> dict[str, Any]:

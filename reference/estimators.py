@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,14 +82,15 @@ class Equiangular(PixelCentres):
     """The main estimator: the integrator `single_scattering` with stratified distances."""
 
     name = "equiangular"
-    version = 2
+    version = 4
     pixel_filter = "centre"
     layers: tuple[str, ...] = ("scattering",)
 
-    def __init__(self, scene: Scene) -> None:
-        # strata lie within a pass, and where the integrand is smooth their error falls as n^-3/2: few large passes
-        super().__init__(scene, "stratified", samples_per_pass=64)
+    def __init__(self, scene: Scene, light_share: float = 1.0) -> None:
+        # strata lie within a pass, which speaks for few large ones; an honest error bar asks for many
+        super().__init__(scene, "stratified", samples_per_pass=16)
         self.integrator = mi.load_dict({"type": "single_scattering"})
+        self.integrator.light_share = light_share
 
     def fixed(self) -> dict[str, Image]:
         """Direct light on surfaces: the lights have no extent, so one ray a pixel is exact."""
@@ -116,7 +119,7 @@ class Volpath(PixelCentres):
     layers: tuple[str, ...] = ("composite",)
 
     def __init__(self, scene: Scene) -> None:
-        super().__init__(scene, "independent", samples_per_pass=64)
+        super().__init__(scene, "independent", samples_per_pass=16)
         self.integrator = mi.load_dict({"type": "volpath", "max_depth": 2})
 
     def fixed(self) -> dict[str, Image]:
@@ -141,17 +144,17 @@ class FilmVolpath:
     """
 
     name = "film_volpath"
-    version = 1
+    version = 2
     pixel_filter = "box"
     layers: tuple[str, ...] = ("scattering", "surface")
+    # how the parameters end that are zero for a layer
+    _BLACK: ClassVar[dict[str, str]] = {"scattering": ".reflectance.value", "surface": ".albedo.value.value"}
 
     def __init__(self, scene: Scene) -> None:
-        self.samples_per_pass = 32
-        self._scenes = {layer: instantiate(scene).scene for layer in self.layers}
-        _set_all(self._scenes["scattering"], ".reflectance.value", 0.0)
-        _set_all(self._scenes["surface"], ".albedo.value.value", 0.0)
+        self.samples_per_pass = 8
+        self._scene = instantiate(scene).scene
+        self._sensor = _box_sensor(scene, self._scene)
         self._integrator = mi.load_dict({"type": "volpath", "max_depth": 2})
-        self._sensors = {layer: _box_sensor(scene, made) for layer, made in self._scenes.items()}
 
     def fixed(self) -> dict[str, Image]:
         """Nothing: both layers are sampled."""
@@ -159,19 +162,18 @@ class FilmVolpath:
 
     def one_pass(self, seed: int) -> dict[str, Image]:
         """Both layers, each from seeds of its own."""
-        return {
-            layer: np.array(
-                mi.render(
-                    self._scenes[layer],
-                    sensor=self._sensors[layer],
+        images = {}
+        for number, layer in enumerate(self.layers):
+            with _zero(self._scene, self._BLACK[layer]):
+                image = mi.render(
+                    self._scene,
+                    sensor=self._sensor,
                     integrator=self._integrator,
                     seed=2 * seed + number,
                     spp=self.samples_per_pass,
-                ),
-                dtype=np.float64,
-            )[..., :3]
-            for number, layer in enumerate(self.layers)
-        }
+                )
+            images[layer] = np.array(image, dtype=np.float64)[..., :3]
+        return images
 
 
 def default_estimator(scene: Scene) -> Estimator:
@@ -179,12 +181,17 @@ def default_estimator(scene: Scene) -> Estimator:
     return FilmVolpath(scene) if mi.variant() == "scalar_rgb" else Equiangular(scene)
 
 
-def _set_all(mitsuba_scene: Any, ending: str, value: float) -> None:
+@contextmanager
+def _zero(mitsuba_scene: Any, ending: str) -> Iterator[None]:
+    """Set the parameters with this ending to zero for a while: what is instantiated from one parse is shared."""
     parameters = mi.traverse(mitsuba_scene)
-    for key in parameters.keys():  # noqa: SIM118 - Mitsuba's map has no iterator of its own
-        if key.endswith(ending):
-            parameters[key] = type(parameters[key])(value)
-    parameters.update()
+    keys = [key for key in parameters.keys() if key.endswith(ending)]  # noqa: SIM118 - the map has no iterator
+    before = {key: type(parameters[key])(parameters[key]) for key in keys}
+    try:
+        parameters.update({key: type(value)(0.0) for key, value in before.items()})
+        yield
+    finally:
+        parameters.update(before)
 
 
 def _box_sensor(scene: Scene, mitsuba_scene: Any) -> Any:

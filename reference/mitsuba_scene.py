@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from scenes.errors import InputError
 from scenes.mitsuba_setup import mitsuba
 from scenes.model import Scene
 
@@ -19,7 +20,7 @@ class MitsubaScene:
 
 
 def instantiate(scene: Scene) -> MitsubaScene:
-    """Make Mitsuba's objects.
+    """Make Mitsuba's objects; those made from one loaded scene share shapes, media and lights.
 
     Nothing of the loader's interpretation enters but the vertex normals of meshes whose files have none: there the
     normals are a choice, and both renderers make the same one.
@@ -30,7 +31,12 @@ def instantiate(scene: Scene) -> MitsubaScene:
     config = parser.ParserConfig(mi.variant())
     config.merge_meshes = False
     config.merge_equivalent = False
-    made: Any = parser.instantiate(config, scene.parsed)
+    try:
+        made: Any = parser.instantiate(config, scene.parsed)
+    except (RuntimeError, ValueError) as error:
+        # what airlight replaces (integrator, sampler, filter) or does not use still has to exist
+        sentence = " ".join(str(error).split()).rstrip(".")
+        raise InputError(f"Mitsuba refuses {scene.path}: {sentence}.") from None
     parameters = mi.traverse(made)
     for mesh in scene.meshes:
         if mesh.computed_normals and mesh.file and mesh.file.path.suffix == ".ply":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from scenes.errors import InputError
@@ -17,11 +18,11 @@ def shipped() -> list[str]:
 def scene_path(scene: str | Path) -> Path:
     """Find a scene's file: any path, or the name of a shipped scene."""
     asked = Path(scene)
-    if asked.is_file():
+    # os.path's answer to a name that is too long or holds a zero byte is no, where Path's is an exception
+    if os.path.isfile(asked):
         return asked
-    named = FOLDER / f"{asked.name.removesuffix('.xml')}.xml"
-    if asked.name == str(scene) and named.is_file():
-        return named
+    if asked.name == str(scene) and asked.name.removesuffix(".xml") in shipped():
+        return FOLDER / f"{asked.name.removesuffix('.xml')}.xml"
     raise InputError(
         f"There is no scene '{scene}': give the path of a Mitsuba XML file or one of {', '.join(shipped())}."
     )

@@ -22,12 +22,14 @@ from scenes.mesh_files import sha256
 from scenes.mitsuba_setup import mitsuba
 from scenes.model import Camera, Light, Mesh, Scene
 from scenes.shapes import load_shape
-from scenes.xml_nodes import Node
+from scenes.xml_nodes import Node, is_similarity
 
 LARGEST_SIDE = 16384
+# Mitsuba's parse_file takes parameters beside arguments of these names
+RESERVED = ("config", "filename")
 
 
-def load(scene: str | Path, size: tuple[int, int] | None = None, **parameters: object) -> Scene:
+def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters: object) -> Scene:
     """Load a scene.
 
     Parameters
@@ -42,7 +44,15 @@ def load(scene: str | Path, size: tuple[int, int] | None = None, **parameters: o
         The file is missing, is not a scene, or holds something outside the supported subset.
     """
     path = scene_path(scene)
+    if size is not None:
+        _check_size(size)
     texts = {name: str(value) for name, value in parameters.items()}
+    for name, text in texts.items():
+        # Mitsuba would take an empty number for 0
+        if not text:
+            raise InputError(f"The parameter {name} of {path} was given no value; give one or leave it out.")
+        if name in RESERVED:
+            raise InputError(f"{path} cannot be given a parameter called {name}; rename it in the scene.")
     state = _parse(path, texts)
     root = Node(state, 0)
     # they say how Mitsuba would estimate the picture; both are replaced
@@ -70,6 +80,11 @@ def _parse(path: Path, parameters: dict[str, str]) -> Any:
     try:
         state = parser.parse_file(config, str(path), **parameters)
         parser.transform_all(config, state)
+        # text of another encoding passes the parser, and breaks whoever reads it
+        for node in state.nodes:
+            node.props.id()
+    except UnicodeDecodeError:
+        raise InputError(f"{path} is not UTF-8; save it as UTF-8.") from None
     except (RuntimeError, ValueError) as error:
         raise InputError(_sentence(path, str(error))) from None
     return state
@@ -116,10 +131,14 @@ def _camera(node: Node, size: tuple[int, int] | None) -> tuple[Camera, Node]:
 def _film_size(sensor: Node, film: Node | None, size: tuple[int, int] | None) -> tuple[int, int]:
     if film is None:
         raise sensor.refuse("has no film; add <film type='hdrfilm'/> with a width and a height.")
-    default = (int(film.number("width", 768)), int(film.number("height", 576)))
-    width, height = size or default
-    if not (1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE):
-        raise InputError(f"An image of {width} x {height} pixels cannot be made: use 1 to {LARGEST_SIDE} on each side.")
+    if film.plugin != "hdrfilm":
+        raise film.refuse("is not supported; use hdrfilm.")
+    width, height = film.integer("width", 768), film.integer("height", 576)
+    if size is None:
+        with film.located():
+            _check_size((width, height))
+    else:
+        width, height = size
     # how the film stores its pixels and reconstructs them: airlight evaluates pixel centres and writes float32 EXR
     film.ignore("file_format", "pixel_format", "component_format", "banner", "compensate", "sample_border")
     film.children("ReconstructionFilter")
@@ -128,11 +147,19 @@ def _film_size(sensor: Node, film: Node | None, size: tuple[int, int] | None) ->
     return width, height
 
 
+def _check_size(size: tuple[int, int]) -> None:
+    width, height = size
+    if not all(isinstance(side, int | np.integer) and 1 <= side <= LARGEST_SIDE for side in (width, height)):
+        raise InputError(f"An image of {width} x {height} pixels cannot be made: use 1 to {LARGEST_SIDE} on each side.")
+
+
 def _tan_half_x(node: Node, aspect: float) -> float:
     """Tangent of half the horizontal field of view, from Mitsuba's `fov` and `fov_axis`."""
-    tan_half = float(np.tan(np.radians(node.number("fov")) / 2))
-    if not 0 < tan_half < 1e3:
-        raise node.refuse("has a 'fov' outside 0 to 180 degrees.")
+    fov = node.number("fov")
+    tan_half = float(np.tan(np.radians(fov) / 2))
+    # near 180 degrees float32 has no digits left
+    if not (0 < fov < 180 and tan_half < 1e3):
+        raise node.refuse(f"has 'fov' = {fov}, which should lie between 0 and 180 degrees.")
     axis = node.take("fov_axis", "x")
     if axis in ("smaller", "larger"):
         axis = "y" if (aspect > 1) == (axis == "smaller") else "x"
@@ -173,7 +200,11 @@ def _phase(node: Node | None) -> Phase:
 def _light(node: Node) -> Light:
     if node.plugin not in ("point", "spot"):
         raise node.refuse("is not supported; use point or spot.")
+    if node.plugin == "point" and {"position", "to_world"} <= set(node.unread):
+        raise node.refuse("has both a 'position' and a 'to_world'; leave one out.")
     to_world = node.transform()
+    if not is_similarity(to_world):
+        raise node.refuse("has a 'to_world' that scales unevenly or shears; use <lookat>, rotations and translations.")
     position = to_world[:3, 3]
     beam_width = cutoff_angle = np.pi
     if node.plugin == "point":

@@ -21,10 +21,21 @@ def mitsuba() -> Any:
     Raises
     ------
     InputError
-        The variant that was asked for is unknown or does not work here.
+        Mitsuba cannot be imported, or the variant that was asked for is unknown or does not work here.
     """
-    llvm = prepare()
-    import mitsuba as mi
+    try:
+        llvm = prepare()
+        import mitsuba as mi
+    except RuntimeError:
+        raise InputError(
+            "Dr.Jit was imported before airlight could choose an LLVM library for it: import airlight first, or set "
+            "DRJIT_LIBLLVM_PATH to the library."
+        ) from None
+    except (ImportError, NameError) as error:
+        # the wheels of Dr.Jit and Mitsuba link to libatomic, which a bare Debian lacks; what they raise says little
+        raise InputError(
+            f"Mitsuba cannot be imported ({error}): run `make setup`, or `apt-get install libatomic1`."
+        ) from None
 
     asked = os.environ.get("AIRLIGHT_MITSUBA_VARIANT")
     if asked and asked not in VARIANTS:

@@ -11,21 +11,30 @@ from numpy.typing import NDArray
 from scenes import tessellate
 from scenes.mesh_files import MeshFile, Triangles, find_mesh, read_mesh, vertex_normals
 from scenes.model import Mesh
-from scenes.xml_nodes import Node
+from scenes.xml_nodes import Node, is_similarity
 
 Matrix = NDArray[np.float64]
 
 
 def _sphere(node: Node) -> tuple[Triangles, Matrix]:
     placed = np.eye(4)
-    placed[:3, :3] *= node.number("radius", 1.0)
+    placed[:3, :3] *= _radius(node)
     placed[:3, 3] = node.point("center", np.zeros(3))
     return tessellate.sphere(), placed
 
 
 def _cylinder(node: Node) -> tuple[Triangles, Matrix]:
     start, end = node.point("p0", np.zeros(3)), node.point("p1", np.array([0.0, 0.0, 1.0]))
-    return tessellate.cylinder(start, end, node.number("radius", 1.0)), np.eye(4)
+    radius = _radius(node)
+    with node.located():
+        return tessellate.cylinder(start, end, radius), np.eye(4)
+
+
+def _radius(node: Node) -> float:
+    radius = node.number("radius", 1.0)
+    if not radius > 0:
+        raise node.refuse(f"has 'radius' = {radius}, which should be positive.")
+    return radius
 
 
 def _plain(make: Callable[[], Triangles]) -> Callable[[Node], tuple[Triangles, Matrix]]:
@@ -40,6 +49,7 @@ ANALYTIC: dict[str, Callable[[Node], tuple[Triangles, Matrix]]] = {
     "disk": _plain(tessellate.disk),
 }
 FROM_FILE = ("ply", "obj")
+ROUND = ("sphere", "cylinder")
 
 
 def load_shape(node: Node, scene_folder: Path, name: str) -> Mesh:
@@ -52,24 +62,36 @@ def load_shape(node: Node, scene_folder: Path, name: str) -> Mesh:
     """
     file: MeshFile | None = None
     if node.plugin in FROM_FILE:
-        file = find_mesh(str(node.take("filename")), scene_folder)
+        filename, flat = node.text("filename"), node.flag("face_normals")
+        if not filename.lower().endswith(f".{node.plugin}"):
+            raise node.refuse(f"reads .{node.plugin} files, and its 'filename' is '{filename}'.")
+        with node.located():
+            file = find_mesh(filename, scene_folder)
+            triangles, local = read_mesh(file.path), np.eye(4)
         node.props["filename"] = str(file.path)
-        flat = node.take("face_normals", False)
-        triangles, local = read_mesh(file.path), np.eye(4)
     elif node.plugin in ANALYTIC:
         # a cube is flat by nature: its normals come with it
         flat = False
         triangles, local = ANALYTIC[node.plugin](node)
     else:
         raise node.refuse(f"is not supported; use one of {', '.join([*FROM_FILE, *ANALYTIC])}.")
-    to_world = node.transform() @ local
-    flip = node.take("flip_normals", False)
+    to_world = node.transform()
+    if node.plugin in ROUND and not is_similarity(to_world):
+        raise node.refuse("has a 'to_world' that scales unevenly or shears, which Mitsuba does not draw; use a mesh.")
+    flip = node.flag("flip_normals")
+    # Mitsuba turns a mirrored sphere inside out
+    if node.plugin == "sphere" and np.linalg.det(to_world[:3, :3]) < 0:
+        flip = not flip
+    to_world = to_world @ local
     for kind in ("Medium", "Emitter", "Sensor"):
         for nested in node.children(kind):
             raise nested.refuse("inside a shape is not supported yet; airlight takes fog that fills all of space.")
     reflectance, two_sided = _diffuse(node.child("BSDF"))
     node.finish()
-    return _place(triangles, to_world, flat, flip, name, reflectance, two_sided, file)
+    mesh = _place(triangles, to_world, flat, flip, name, reflectance, two_sided, file)
+    if not np.isfinite(mesh.vertices).all():
+        raise node.refuse("has vertices beyond what float32 holds; scale it down.")
+    return mesh
 
 
 def _place(
@@ -84,11 +106,13 @@ def _place(
 ) -> Mesh:
     linear = to_world[:3, :3]
     vertices = np.asarray(triangles.vertices, np.float64) @ linear.T + to_world[:3, 3]
+    with np.errstate(over="ignore"):  # the caller refuses what becomes infinite
+        placed = vertices.astype(np.float32)
     faces = triangles.faces
     if flat:
         normals = None
     elif triangles.normals is None:
-        normals = np.asarray(vertex_normals(vertices.astype(np.float32), faces), np.float64)
+        normals = np.asarray(vertex_normals(placed, faces), np.float64)
     else:
         # the transpose of the inverse, which keeps normals normal under uneven scaling
         normals = np.asarray(triangles.normals, np.float64) @ np.linalg.inv(linear)
@@ -100,10 +124,11 @@ def _place(
         normals = None if normals is None else -normals
     return Mesh(
         name=name,
-        vertices=vertices.astype(np.float32),
+        vertices=placed,
         faces=np.ascontiguousarray(faces, dtype=np.uint32),
         normals=None if normals is None else normals.astype(np.float32),
-        computed_normals=file is not None and not flat and triangles.normals is None,
+        # Mitsuba turns flipped ones itself, as it reads them; its own differ from ours by less than 1e-4 rad
+        computed_normals=file is not None and not flat and not flip and triangles.normals is None,
         reflectance=reflectance,
         two_sided=two_sided,
         file=file,
@@ -117,8 +142,8 @@ def _diffuse(node: Node | None) -> tuple[NDArray[np.float64], bool]:
     if node.plugin == "twosided":
         inner = node.children("BSDF")
         node.finish()
-        if len(inner) != 1:
-            raise node.refuse("should hold one BSDF for both sides.")
+        if len(inner) != 1 or inner[0].plugin == "twosided":
+            raise node.refuse("should hold one diffuse BSDF for both sides.")
         return _diffuse(inner[0])[0], True
     if node.plugin != "diffuse":
         raise node.refuse("is not supported; use diffuse or twosided.")

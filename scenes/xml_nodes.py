@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,8 @@ from scenes.errors import InputError
 from scenes.mitsuba_setup import mitsuba
 
 REQUIRED: Any = object()
+# Mitsuba computes in float32: what it cannot hold would be infinite there
+LARGEST = float(np.finfo(np.float32).max)
 
 
 class Node:
@@ -41,6 +45,14 @@ class Node:
         """Make the error that names this node's place and plugin; the caller raises it."""
         return InputError(f"{self.where}: {self.kind.lower()} plugin '{self.plugin}' {why}")
 
+    @contextmanager
+    def located(self) -> Iterator[None]:
+        """Put this node's place before the text of an error that does not know it."""
+        try:
+            yield
+        except InputError as error:
+            raise InputError(f"{self.where}: {error}") from None
+
     def take(self, name: str, default: Any = REQUIRED) -> Any:
         """Read a property as Mitsuba stored it."""
         if name not in self.unread:
@@ -53,43 +65,71 @@ class Node:
     def number(self, name: str, default: Any = REQUIRED) -> float:
         """Read a finite number."""
         value = self.take(name, default)
-        if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
+        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST:
             raise self.refuse(f"has '{name}' = {value}, which should be a finite number.")
         return float(value)
 
+    def integer(self, name: str, default: Any = REQUIRED) -> int:
+        """Read a whole number."""
+        value = self.take(name, default)
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise self.refuse(f"has '{name}' = {value}, which should be an <integer>.")
+        return value
+
+    def flag(self, name: str, default: bool = False) -> bool:
+        """Read a truth value."""
+        value = self.take(name, default)
+        if not isinstance(value, bool):
+            raise self.refuse(f"has '{name}' = {value}, which should be a <boolean>.")
+        return value
+
+    def text(self, name: str, default: Any = REQUIRED) -> str:
+        """Read a text that is not empty."""
+        value = self.take(name, default)
+        if not (isinstance(value, str) and value):
+            raise self.refuse(f"has '{name}' = '{value}', which should be a <string>.")
+        return value
+
     def color(self, name: str, default: Any = REQUIRED) -> NDArray[np.float64]:
-        """Read a linear Rec.709 colour, (3,), from an <rgb>, a <float> or a uniform <spectrum>."""
+        """Read a linear Rec.709 colour, (3,), from an <rgb>, a <float> or, except for light, a uniform <spectrum>."""
         mi = mitsuba()
         value = self.take(name, default)
-        if isinstance(value, mi.Spectrum) and value.is_uniform():
-            value = value.values[0]
         if isinstance(value, mi.Properties.ResolvedReference):
             raise self.refuse(f"has a texture as '{name}', which is not supported yet; give an <rgb>.")
-        try:
-            rgb = np.broadcast_to(np.asarray(value, dtype=np.float64), 3)
-        except (TypeError, ValueError):
-            raise self.refuse(f"has '{name}' = {value}, which should be an <rgb> or a uniform <spectrum>.") from None
-        if not np.isfinite(rgb).all() or (rgb < 0).any():
+        # A parsed spectrum's class has no name in the module. As the emission of a light, Mitsuba takes a uniform one
+        # for power per wavelength, and that is not white.
+        if hasattr(value, "is_uniform") and value.is_uniform() and self.kind != "Emitter":
+            value = value.values[0]
+        if isinstance(value, bool) or not isinstance(value, int | float | mi.ScalarColor3d):
+            raise self.refuse(f"has '{name}' = {value}, which should be an <rgb> or a <float>.")
+        rgb = np.broadcast_to(np.asarray(value, dtype=np.float64), 3)
+        if not (rgb <= LARGEST).all() or (rgb < 0).any():
             raise self.refuse(f"has '{name}' = {rgb.tolist()}, which should be finite and not negative.")
         return rgb
 
     def point(self, name: str, default: Any = REQUIRED) -> NDArray[np.float64]:
         """Read a point or vector, (3,)."""
-        value = np.asarray(self.take(name, default), dtype=np.float64)
-        if value.shape != (3,) or not np.isfinite(value).all():
-            raise self.refuse(f"has '{name}' = {value.tolist()}, which should be a finite point.")
-        return value
+        value = self.take(name, default)
+        if np.shape(value) != (3,) or isinstance(value, mitsuba().ScalarColor3d):
+            raise self.refuse(f"has '{name}' = {value}, which should be a <point>.")
+        point = np.asarray(value, dtype=np.float64)
+        if not (abs(point) <= LARGEST).all():
+            raise self.refuse(f"has '{name}' = {point.tolist()}, which should be a finite point.")
+        return point
 
     def transform(self, name: str = "to_world") -> NDArray[np.float64]:
         """Read a transform, (4, 4); the identity where the scene gives none."""
         value = self.take(name, None)
         if value is None:
             return np.eye(4)
+        if not isinstance(value, mitsuba().ScalarAffineTransform4d):
+            raise self.refuse(f"has '{name}' = {value}, which should be a <transform>.")
         matrix = np.array(value.matrix, dtype=np.float64)
-        if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix[:3, :3])) < 1e-30:
+        if not (abs(matrix) <= LARGEST).all() or abs(np.linalg.det(matrix[:3, :3])) < 1e-30:
             raise self.refuse(f"has a '{name}' that is not finite or cannot be inverted.")
-        if not np.allclose(matrix[3], [0, 0, 0, 1]):
-            raise self.refuse(f"has a '{name}' that is not affine.")
+        # Mitsuba's <rotate> takes its axis as it stands, and then turns points one way and normals another
+        if not np.allclose(np.array(value.inverse_transpose) @ matrix.T, np.eye(4), atol=1e-4):
+            raise self.refuse(f"has a '{name}' with a rotation about an axis that is not of unit length; normalise it.")
         return matrix
 
     def children(self, *kinds: str) -> list[Node]:
@@ -102,8 +142,8 @@ class Node:
             if not isinstance(value, mi.Properties.ResolvedReference):
                 continue
             child = Node(self.state, value.index())
-            # a nested texture or medium with a name plays a part of its own: it is not taken by its kind
-            if child.kind in kinds and name.startswith("_arg_"):
+            # Mitsuba goes by the kind too: a name such as <film name="film"> has no bearing
+            if child.kind in kinds:
                 self.unread.remove(name)
                 found.append(child)
         return found
@@ -135,3 +175,9 @@ class Node:
                 child = Node(self.state, value.index())
                 raise child.refuse(f"inside '{self.plugin}' is outside what airlight supports.")
             raise self.refuse(f"has a property '{name}' that airlight does not know; remove it or correct its name.")
+
+
+def is_similarity(matrix: NDArray[np.float64]) -> bool:
+    """Whether a transform, (4, 4), turns, mirrors, moves and scales evenly, and does no more."""
+    gram = matrix[:3, :3].T @ matrix[:3, :3]
+    return bool(np.allclose(gram / (np.trace(gram) / 3), np.eye(3), atol=1e-4))

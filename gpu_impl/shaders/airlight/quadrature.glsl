@@ -30,8 +30,8 @@ float channel(Ray ray, Light light, float t0, float dt, float extinction) {
     for (int i = 0; i < NODES; ++i) {
         float X = 1.0 / (Y_a - dY * NODE[i]);
         float beyond = q * dY * NODE[i] * X * X_a * (X + X_a - 1.0);  // v - v_a
-        float v = v_a + beyond, v2 = v * v;
-        float term = phase((1.0 - v2) / (1.0 + v2)) * exp(-H * beyond) * (2.0 * X - 1.0) * X * X / (1.0 + v2);
+        float v = v_a + beyond, cos2 = 1.0 / (1.0 + v * v);
+        float term = phase(vec2(cos2, v * v * cos2)) * exp(-H * beyond) * (2.0 * X - 1.0) * X * X * cos2;
         // only a soft spot changes along the piece: a hard one is cut at its cone
         if (light.beam_width < light.cutoff_angle)
             term *= falloff(light, ray.o + ray.d * (p.t_h + 0.5 * p.h * (v - 1.0 / v)));

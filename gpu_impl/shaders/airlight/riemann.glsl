@@ -7,10 +7,11 @@ const bool CLIP_TO_CONE = false;
 
 vec3 airlight(Ray ray, Light light, float t0, float dt) {
     float t = t0 + 0.5 * dt;
-    vec3 point = ray.o + t * ray.d;
-    vec3 to_light = light.position - point;
+    vec3 point = ray.o + t * ray.d, to_light = light.position - point;
     float d2 = max(dot(to_light, to_light), 1e-20), d = sqrt(d2);
-    float cos_theta = dot(-to_light, -ray.d) / d;
-    return light.intensity * falloff(light, point) * sigma_s * phase(cos_theta) * dt / d2
+    // cos(theta) = l . d with l the direction to the light, so that |l + d|^2 = 4 cos^2(theta/2)
+    vec3 l = to_light / d;
+    vec2 half_angle = 0.25 * vec2(dot(l + ray.d, l + ray.d), dot(l - ray.d, l - ray.d));
+    return light.intensity * falloff(light, point) * sigma_s * phase(half_angle) * dt / d2
          * exp(-sigma_t * (t + d));
 }

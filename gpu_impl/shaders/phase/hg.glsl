@@ -1,8 +1,11 @@
 // Henyey and Greenstein 1941; g > 0 is forward.
 uniform float g;
-float phase(float cos_theta) {
-    float s = 1.0 + g * g - 2.0 * g * cos_theta;
-    return 0.0795774715459477 * (1.0 - g * g) / (s * sqrt(s));
+
+float phase(vec2 half_angle) {
+    // 1 + g^2 - 2 g cos(theta), without its cancellation at the peak
+    float s = (1.0 - abs(g)) * (1.0 - abs(g)) + 4.0 * abs(g) * (g > 0.0 ? half_angle.y : half_angle.x);
+    return 0.0795774715459477 * (1.0 - g) * (1.0 + g) / (s * sqrt(s));
 }
+
 // its poles in v lie at +-i (1 - g) / (1 + g)
 float phase_scale() { return sqrt((1.0 - g) / (1.0 + g)); }

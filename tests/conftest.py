@@ -1,0 +1,29 @@
+"""What every test stands on: Mitsuba set up as airlight sets it up, and folders that are not the user's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from scenes.mitsuba_setup import mitsuba
+
+# before any test module imports Mitsuba by itself: Dr.Jit settles on an LLVM library when it is first imported
+MITSUBA = mitsuba()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("XDG_DATA_HOME", str(tmp_path_factory.mktemp("data")))
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _variant_stays() -> Iterator[None]:
+    """A test that turns to another variant leaves the others theirs."""
+    before = MITSUBA.variant()
+    yield
+    if MITSUBA.variant() != before:
+        MITSUBA.set_variant(before)

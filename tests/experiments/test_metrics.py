@@ -1,0 +1,142 @@
+"""Each metric against a value worked out by hand or by code that shares nothing with ours."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+
+import flip_evaluator
+import numpy as np
+import pytest
+
+from experiments import flip
+from experiments.metrics import measure, signed_relative_error
+from scenes.errors import InputError
+
+
+@pytest.fixture(autouse=True)
+def _cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+
+
+def grey(*values: float) -> np.ndarray:
+    """A picture of one row."""
+    return np.repeat(np.array(values, np.float64)[None, :, None], 3, axis=2)
+
+
+def test_identical_pictures_have_no_error() -> None:
+    picture = np.random.default_rng(0).uniform(0.1, 3, (12, 10, 3))
+    assert set(asdict(measure(picture, picture)).values()) == {0.0}
+
+
+def test_each_number_by_hand() -> None:
+    # mean of the reference 2, so eps = (0.01 * 2)^2 = 4e-4; errors 0.1, -0.2, 0, 0.4
+    found = measure(grey(1.1, 1.8, 2.0, 3.4), grey(1.0, 2.0, 2.0, 3.0))
+    assert found.rmse == pytest.approx(np.sqrt((0.01 + 0.04 + 0 + 0.16) / 4))
+    assert found.bias == pytest.approx(found.rmse)
+    assert found.mean_rel == pytest.approx((0.1 - 0.1 + 0 + 0.4 / 3) / 4)
+    assert found.rel_mse == pytest.approx((0.01 / 1.0004 + 0.04 / 4.0004 + 0.16 / 9.0004) / 4)
+    assert found.image_mean_rel == pytest.approx(8.3 / 8 - 1)
+    # |relative error| of the 12 numbers, sorted: 0 x 3, 0.1 x 6, 0.1333 x 3
+    assert found.rel_50 == pytest.approx(0.1)
+    assert found.rel_95 == pytest.approx(0.4 / 3)
+    assert found.rel_99 == pytest.approx(0.4 / 3)
+
+
+def test_percentiles_over_a_hundred_and_one_numbers() -> None:
+    reference = np.ones((1, 101, 3))
+    test = reference + np.arange(101)[None, :, None] / 100
+    found = measure(test, reference)
+    assert [found.rel_50, found.rel_95, found.rel_99] == pytest.approx([0.5, 0.95, 0.99], abs=0.007)
+
+
+def test_pixels_darker_than_a_hundredth_of_the_mean_count_as_that_bright() -> None:
+    error = signed_relative_error(grey(0.5, 2.0), grey(0.0, 2.0))
+    np.testing.assert_allclose(error, grey(0.5 / 0.01, 0.0))
+
+
+def test_brightness_scales_out_of_what_is_relative() -> None:
+    rng = np.random.default_rng(1)
+    reference = rng.uniform(0, 2, (6, 6, 3))
+    test = reference * rng.uniform(0.9, 1.1, (6, 6, 3))
+    small, large = (asdict(measure(test * s, reference * s)) for s in (1e-4, 1e4))
+    for name in ("rel_mse", "mean_rel", "rel_50", "rel_95", "rel_99", "image_mean_rel"):
+        assert small[name] == pytest.approx(large[name], rel=1e-9)
+    assert large["rmse"] == pytest.approx(1e8 * small["rmse"])
+
+
+def test_noise_of_the_reference_is_not_charged_to_the_technique() -> None:
+    rng = np.random.default_rng(2)
+    truth = np.ones((200, 200, 3))
+    sigma, offset = 0.05, 0.02
+    noisy = truth + rng.normal(0, sigma, truth.shape)
+    error = np.full(truth.shape, sigma)
+    exact, biased = measure(truth, noisy, error), measure(truth + offset, noisy, error)
+    assert exact.rmse == pytest.approx(sigma, rel=0.01)
+    # bias^2 is the difference of two numbers of 2.5e-3, known to sqrt(2 / 120000) = 0.4 %: three of its errors are 3e-5
+    assert exact.bias < np.sqrt(3e-5)
+    assert biased.bias == pytest.approx(offset, abs=2e-3)
+    assert measure(truth, noisy).bias == measure(truth, noisy).rmse
+
+
+def test_a_black_reference_has_no_relative_errors() -> None:
+    found = asdict(measure(grey(0.3, 0.4), grey(0, 0)))
+    assert found.pop("rmse") == found.pop("bias") == pytest.approx(np.sqrt(0.125))
+    assert set(found.values()) == {None}
+
+
+def test_a_reference_that_is_negative_on_average_has_none_either() -> None:
+    assert measure(grey(0.3, 0.4), grey(-1, 0.5)).rel_95 is None
+
+
+def test_sizes_must_agree() -> None:
+    with pytest.raises(InputError, match=r"different sizes, 2 x 1 and 3 x 1 pixels"):
+        measure(grey(1, 2), grey(1, 2, 3))
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("place", range(3))
+def test_values_that_are_not_finite_are_refused(value: float, place: int) -> None:
+    pictures = [grey(1, 2), grey(1, 2), grey(0.1, 0.1)]
+    pictures[place][0, 1, 2] = value
+    with pytest.raises(InputError, match=("picture", "reference", "standard error")[place]):
+        measure(*pictures)
+
+
+def flip_of_its_authors(test: np.ndarray, reference: np.ndarray) -> float:
+    settings = {"ppd": flip_evaluator.evaluate(reference[:8, :8], test[:8, :8], "HDR")[2]["ppd"]}
+    error_map = flip_evaluator.evaluate(reference, test, "HDR", True, False, False, settings)[0]
+    return float(np.mean(error_map, dtype=np.float64))
+
+
+def test_flip_is_its_authors_own() -> None:
+    rng = np.random.default_rng(3)
+    reference = rng.uniform(0, 4, (24, 32, 3)).astype(np.float32)
+    test = (reference * rng.uniform(0.5, 1.5, reference.shape)).astype(np.float32)
+    expected = flip_of_its_authors(test, reference)
+    assert 0.01 < expected < 1
+    # their mean is summed in float32
+    assert measure(test, reference).flip == pytest.approx(expected, rel=1e-5)
+    assert flip_evaluator.evaluate(reference, test, "HDR")[2]["ppd"] == pytest.approx(67.02, abs=0.01)
+
+
+def test_flip_is_remembered_and_the_same(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    rng = np.random.default_rng(4)
+    pair = [rng.uniform(0, 2, (16, 16, 3)).astype(np.float32) for _ in range(2)]
+    calls = []
+    evaluate = flip._evaluate
+    monkeypatch.setattr(flip, "_evaluate", lambda *images: calls.append(1) or evaluate(*images))
+    first, again, other = flip.hdr_flip(*pair), flip.hdr_flip(*pair), flip.hdr_flip(*pair[::-1])
+    assert first == again
+    assert first != other
+    assert len(calls) == 2
+    for entry in (tmp_path / "airlight" / "flip").iterdir():
+        entry.write_text("nonsense")
+    assert flip.hdr_flip(*pair) == first
+    assert len(calls) == 3
+
+
+def test_flip_works_without_a_cache(monkeypatch: pytest.MonkeyPatch) -> None:
+    picture = np.ones((16, 16, 3), np.float32)
+    monkeypatch.setenv("XDG_CACHE_HOME", "/proc/nowhere")
+    assert flip.hdr_flip(picture, picture) == 0

@@ -1,0 +1,158 @@
+"""Passes accumulated until an error bar is small enough, with estimators whose variance is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from reference import convergence
+from reference.convergence import FEWEST_PASSES, converge, relative_error
+from reference.goal import Goal
+from scenes.errors import InputError
+
+
+class Synthetic:
+    """Normal noise of known spread around a known image; `common` moves all pixels of a pass together."""
+
+    name, version, samples_per_pass, pixel_filter = "synthetic", 1, 1, "centre"
+    layers = ("scattering",)
+
+    def __init__(self, truth: np.ndarray, spread: float, common: float = 0.0, first_seed: int = 0) -> None:
+        self.truth, self.spread, self.common, self.first_seed = truth, spread, common, first_seed
+        self.seeds: list[int] = []
+        self.passes: list[np.ndarray] = []
+
+    def fixed(self) -> dict[str, np.ndarray]:
+        return {"surface": 0.5 * self.truth}
+
+    def one_pass(self, seed: int) -> dict[str, np.ndarray]:
+        self.seeds.append(seed)
+        rng = np.random.default_rng([self.first_seed, seed])
+        noise = self.spread * rng.normal(size=self.truth.shape) + self.common * rng.normal()
+        self.passes.append(self.truth * (1 + noise))
+        return {"scattering": self.passes[-1]}
+
+
+def an_image(height: int = 16, width: int = 24) -> np.ndarray:
+    return np.random.default_rng(3).uniform(0.5, 2, (height, width, 3))
+
+
+def test_mean_and_standard_error_are_those_of_numpy() -> None:
+    # an offset of 1e6 with a spread of 1: a sum of squares would have lost most of its digits
+    estimator = Synthetic(1e6 * np.ones((8, 8, 3)), spread=1e-6)
+    estimate = converge(estimator, Goal(0.5))
+    passes = np.array(estimator.passes)
+    assert estimate.passes == len(passes) == FEWEST_PASSES
+    assert estimate.mean["scattering"] == pytest.approx(passes.mean(0), rel=1e-14)
+    error = passes.std(0, ddof=1) / np.sqrt(len(passes))
+    assert estimate.standard_error["scattering"] == pytest.approx(error, rel=1e-6)
+    means = passes.mean((1, 2))
+    assert estimate.image_mean["scattering"] == pytest.approx(means.mean(0), rel=1e-14)
+    assert estimate.image_error["scattering"] == pytest.approx(means.std(0, ddof=1) / np.sqrt(len(passes)), rel=1e-6)
+    assert estimate.mean["scattering"].dtype == np.float64
+
+
+def test_error_bars_of_pixels_cover_the_truth() -> None:
+    """(mean - truth) / standard error follows Student's t with passes - 1 degrees of freedom."""
+    truth = an_image(64, 64)
+    estimate = converge(Synthetic(truth, spread=0.1), Goal(0.5))
+    z = ((estimate.mean["scattering"] - truth) / estimate.standard_error["scattering"]).ravel()
+    assert stats.kstest(z, stats.t(estimate.passes - 1).cdf).pvalue > 1e-3
+    # the test sees a bar that is 10 % too short
+    assert stats.kstest(z * 1.1, stats.t(estimate.passes - 1).cdf).pvalue < 1e-4
+
+
+def test_the_image_means_error_bar_covers_what_pixels_have_in_common() -> None:
+    truth = an_image(4, 4)
+    z, naive = [], []
+    for first_seed in range(300):
+        estimate = converge(Synthetic(truth, spread=0.02, common=0.05, first_seed=first_seed), Goal(0.9))
+        difference = (estimate.image_mean["scattering"] - truth.mean((0, 1)))[0]
+        z.append(difference / estimate.image_error["scattering"][0])
+        naive.append(difference / np.sqrt((estimate.standard_error["scattering"][..., 0] ** 2).sum()) * 16)
+    distribution = stats.t(FEWEST_PASSES - 1).cdf
+    assert stats.kstest(z, distribution).pvalue > 1e-3
+    # pixels taken for independent would give a bar several times too short
+    assert stats.kstest(naive, distribution).pvalue < 1e-6
+
+
+def test_it_stops_at_the_goal() -> None:
+    # standard error = spread / sqrt(passes); the 95th percentile of pixels lies a little above
+    estimate = converge(Synthetic(an_image(), spread=0.2), Goal(rel_error=0.02))
+    assert estimate.reached
+    assert estimate.rel_error <= 0.02
+    assert 100 < estimate.passes < 170
+    assert estimate.rel_error == relative_error(estimate.mean["scattering"], estimate.standard_error["scattering"])
+
+
+def test_it_never_takes_fewer_passes_than_an_error_bar_needs() -> None:
+    estimate = converge(Synthetic(an_image(), spread=1e-9), Goal(rel_error=0.9))
+    assert estimate.reached
+    assert estimate.passes == FEWEST_PASSES
+
+
+def test_it_stops_at_the_time_limit_and_says_so() -> None:
+    estimate = converge(Synthetic(an_image(), spread=1.0), Goal(rel_error=1e-6, time_limit=1e-9))
+    assert not estimate.reached
+    assert estimate.passes == FEWEST_PASSES
+    assert estimate.rel_error > 1e-6
+
+
+def test_passes_have_seeds_of_their_own() -> None:
+    estimator = Synthetic(an_image(), spread=0.2)
+    converge(estimator, Goal(rel_error=0.03))
+    assert len(set(estimator.seeds)) == len(estimator.seeds) >= FEWEST_PASSES
+
+
+def test_progress_is_reported() -> None:
+    reports: list[convergence.Progress] = []
+    estimate = converge(Synthetic(an_image(), spread=0.2), Goal(rel_error=0.02), reports.append)
+    assert [report.passes for report in reports] == list(range(2, estimate.passes + 1))
+    assert reports[-1].rel_error == estimate.rel_error
+    assert all(report.seconds_left >= 0 for report in reports)
+    assert reports[-1].seconds_left == 0
+
+
+def test_what_needs_no_sampling_has_no_error() -> None:
+    truth = an_image()
+    estimate = converge(Synthetic(truth, spread=0.01), Goal(0.5))
+    assert (estimate.mean["surface"] == 0.5 * truth).all()
+    assert (estimate.standard_error["surface"] == 0).all()
+    assert estimate.image_mean["surface"] == pytest.approx(0.5 * truth.mean((0, 1)))
+    assert (estimate.image_error["surface"] == 0).all()
+
+
+def test_dark_pixels_do_not_decide() -> None:
+    # a tenth of the pixels nearly black, with an error as large as themselves
+    mean, error = np.ones((10, 10, 3)), np.full((10, 10, 3), 0.01)
+    mean[0], error[0] = 1e-9, 1e-9
+    assert relative_error(mean, error) == pytest.approx(0.01)
+    # dim ones do
+    mean[0], error[0] = 0.02, 0.02
+    assert relative_error(mean, error) == pytest.approx(1.0)
+
+
+def test_a_black_image_is_an_error() -> None:
+    with pytest.raises(InputError, match="zero everywhere"):
+        converge(Synthetic(np.zeros((4, 4, 3)), spread=0.1), Goal())
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+@pytest.mark.parametrize("layer", ["scattering", "surface"])
+def test_a_pixel_that_is_not_finite_is_an_error(value: float, layer: str) -> None:
+    estimator = Synthetic(an_image(), spread=0.1)
+    spoilt = an_image()
+    spoilt[3, 5, 1] = value
+    if layer == "surface":
+        estimator.fixed = lambda: {"surface": spoilt}  # type: ignore[method-assign]
+    else:
+        estimator.truth = spoilt
+    with pytest.raises(InputError, match=f"'{layer}' has pixels that are not finite"):
+        converge(estimator, Goal(0.5))
+
+
+@pytest.mark.parametrize(("rel_error", "time_limit"), [(0, 1), (1, 1), (-0.1, 1), (np.nan, 1), (0.1, 0), (0.1, np.nan)])
+def test_goals_that_cannot_be_meant(rel_error: float, time_limit: float) -> None:
+    with pytest.raises(InputError, match="use a"):
+        Goal(rel_error, time_limit)
