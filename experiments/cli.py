@@ -42,7 +42,9 @@ Size = Annotated[
 ]
 RelError = Annotated[
     float,
-    typer.Option(help="Relative standard error to reach, at the 95th percentile of pixels of the scattering layer."),
+    typer.Option(
+        help="Relative standard error to reach, at the 95th percentile of lit pixels of the scattering layer."
+    ),
 ]
 TimeLimit = Annotated[float, typer.Option(help="Seconds after which the reference stops where it is.")]
 

@@ -18,7 +18,10 @@ DARKEST = 0.01
 
 @dataclass(frozen=True)
 class Metrics:
-    """Errors of one layer, over all pixels and channels. None where a number has no meaning: a black reference.
+    """Errors of one layer, over pixels and channels. None where a number has no meaning: a black reference.
+
+    Relative errors (mean and percentiles) count the values that are not zero in both pictures: outside a spot's cone
+    every technique is right, and how much of that an image shows is no merit.
 
     Attributes
     ----------
@@ -74,7 +77,7 @@ def measure(test: Image, reference: Image, standard_error: Image | None = None) 
     rmse, bias = float(np.sqrt(squared.mean())), float(np.sqrt(max(0.0, squared.mean() - variance)))
     if not reference.mean() > 0:
         return Metrics(None, rmse, bias, None, None, None, None, None, None)
-    relative = signed_relative_error(test, reference)
+    relative = signed_relative_error(test, reference)[(test != 0) | (reference != 0)]
     percentiles = np.percentile(np.abs(relative), [50, 95, 99])
     return Metrics(
         rel_mse=float(np.mean(squared / (reference**2 + (DARKEST * reference.mean()) ** 2))),

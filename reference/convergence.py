@@ -128,7 +128,7 @@ def converge(estimator: Estimator, goal: Goal, report: Callable[[Progress], None
 
 
 def relative_error(mean: Image, standard_error: Image) -> float:
-    """Standard error over mean at the 95th percentile of pixels and channels; see `DARKEST`.
+    """Standard error over mean at the 95th percentile of the pixels and channels that are lit; see `DARKEST`.
 
     Raises
     ------
@@ -138,7 +138,8 @@ def relative_error(mean: Image, standard_error: Image) -> float:
     floor = DARKEST * mean.mean()
     if floor <= 0:
         raise InputError("The reference is zero everywhere: no light reaches the fog that the camera sees.")
-    return float(np.percentile(standard_error / np.maximum(mean, floor), PERCENTILE))
+    lit = mean > 0
+    return float(np.percentile(standard_error[lit] / np.maximum(mean[lit], floor), PERCENTILE))
 
 
 def _check_finite(layer: str, image: Image) -> None:

@@ -13,7 +13,7 @@ class Goal:
 
     Attributes
     ----------
-    rel_error : float      standard error relative to the pixel, at the 95th percentile of pixels
+    rel_error : float      standard error relative to the pixel, at the 95th percentile of lit pixels
     time_limit : float     [s]; checked after each pass
     """
 

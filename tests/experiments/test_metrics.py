@@ -103,6 +103,20 @@ def test_values_that_are_not_finite_are_refused(value: float, place: int) -> Non
         measure(*pictures)
 
 
+def test_pixels_that_are_black_in_both_pictures_do_not_flatter() -> None:
+    rng = np.random.default_rng(5)
+    reference = rng.uniform(1, 2, (8, 8, 3))
+    test = reference * rng.uniform(0.9, 1.1, reference.shape)
+    padding = ((0, 0), (0, 24), (0, 0))
+    alone, padded = measure(test, reference), measure(np.pad(test, padding), np.pad(reference, padding))
+    for metric in ("mean_rel", "rel_50", "rel_95", "rel_99", "image_mean_rel"):
+        assert getattr(padded, metric) == pytest.approx(getattr(alone, metric), rel=1e-12)
+    # light where there should be none does count
+    lit = np.pad(test, padding)
+    lit[0, 8:] = 1
+    assert measure(lit, np.pad(reference, padding)).rel_99 > 1
+
+
 def flip_of_its_authors(test: np.ndarray, reference: np.ndarray) -> float:
     settings = {"ppd": flip_evaluator.evaluate(reference[:8, :8], test[:8, :8], "HDR")[2]["ppd"]}
     error_map = flip_evaluator.evaluate(reference, test, "HDR", True, False, False, settings)[0]
