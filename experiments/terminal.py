@@ -164,9 +164,9 @@ def results_table(rows: list[Row]) -> Table:
     first = rows[0]
     starred = " * with stand-in meshes." if any(row["stand_ins"] for row in rows) else ""
     table.caption = (
-        "median, 95 %, 99 % of |t - r| / max(r, 1 % of the mean r) where either is lit; mean +- of the same with its sign. "
-        "bias: RMSE without the reference's noise. FLIP all: of the composite. noise: relative standard error of the "
-        "reference, 95 %."
+        "median, 95 %, 99 % of |t - r| / max(r, 1 % of the mean r) where either is lit; mean +- of the same with its "
+        "sign. bias: RMSE without the reference's noise. FLIP all: of the composite. noise: relative standard error of "
+        "the reference, 95 %."
         f"{starred}\n{first['gl_renderer']}; reference {first['estimator']}, {first['variant']}."
     )
     return table
