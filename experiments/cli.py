@@ -106,7 +106,7 @@ def render(
     """
     from experiments.exr import check_writable
     from experiments.pictures import write_frame
-    from experiments.terminal import announce_stand_ins, console
+    from experiments.terminal import announce_stand_ins, say
     from gpu_impl.renderer import Renderer
     from gpu_impl.techniques import find_technique
     from scenes.loader import load
@@ -119,11 +119,9 @@ def render(
         frame = renderer.render(chosen)
         milliseconds = renderer.milliseconds(chosen)
     write_frame(out, loaded, frame)
-    console.print(
+    say(
         f"{out}: {loaded.name}, {chosen.name}, {milliseconds:.1f} ms a frame on {frame.gl.renderer} (median of 5, wall "
-        "clock around glFinish)",
-        highlight=False,
-        markup=False,
+        "clock around glFinish)"
     )
 
 
@@ -145,27 +143,28 @@ def reference(
     """
     from experiments.exr import check_writable
     from experiments.pictures import write_reference
-    from experiments.terminal import TerminalWatcher, announce_accuracy, announce_stand_ins, announce_variant, console
+    from experiments.terminal import TerminalWatcher, announce_accuracy, announce_stand_ins, announce_variant, say
     from scenes.loader import load
+    from scenes.mitsuba_setup import mitsuba
 
     goal = Goal(rel_error, time_limit)
     check_writable(out)
     loaded = load(scene, size=size, **_parameters(parameter))
     announce_stand_ins(loaded)
     announce_variant()
+    if check and mitsuba().variant() == "scalar_rgb":
+        raise InputError("--check compares with volpath, and in scalar_rgb the reference is volpath; leave it out.")
     from reference.estimate import estimate_reference
 
     with TerminalWatcher(rel_error) as watcher:
         result = estimate_reference(loaded, goal, watcher.reference)
-    announce_accuracy(result, rel_error)
+    announce_accuracy(result)
     write_reference(out, loaded, result)
     estimate = result.estimate
     source = "from the cache" if result.from_cache else f"{estimate.seconds:.1f} s"
-    console.print(
+    say(
         f"{out}: {loaded.name}, relative standard error {estimate.rel_error:.3%} at the 95th percentile, "
-        f"{estimate.passes} passes, {source}",
-        highlight=False,
-        markup=False,
+        f"{estimate.passes} passes, {source}"
     )
     if check:
         _check_against_volpath(loaded)
@@ -187,7 +186,7 @@ def compare(
     from dataclasses import asdict
 
     from experiments.compare import compare_files
-    from experiments.terminal import console, metrics_table
+    from experiments.terminal import console, metrics_table, say
 
     metrics = compare_files(picture, truth, layer, heatmap)
     if json:
@@ -195,7 +194,7 @@ def compare(
     else:
         console.print(metrics_table(layer, metrics))
         if heatmap:
-            console.print(f"Heat map: {heatmap}", highlight=False, markup=False)
+            say(f"Heat map: {heatmap}")
 
 
 @app.command()
@@ -210,7 +209,7 @@ def run(
     Example: airlight run quick
     """
     from experiments.suite import load_suite
-    from experiments.terminal import TerminalWatcher, announce_variant, console, results_table
+    from experiments.terminal import TerminalWatcher, announce_variant, console, results_table, say
 
     name, loaded = load_suite(suite)
     # says which Mitsuba serves before anything is computed
@@ -220,7 +219,7 @@ def run(
     with TerminalWatcher(loaded.reference.rel_error) as watcher:
         rows, folder = run_suite(name, loaded, out, watcher)
     console.print(results_table(rows))
-    console.print(f"Results: {folder.resolve()}", highlight=False, markup=False, soft_wrap=True)
+    say(f"Results: {folder.resolve()}")
 
 
 def _parameters(given: list[str] | None) -> dict[str, str]:
@@ -236,18 +235,16 @@ def _parameters(given: list[str] | None) -> dict[str, str]:
 
 
 def _check_against_volpath(scene: Scene) -> None:
-    from experiments.terminal import TerminalWatcher, console
+    from experiments.terminal import TerminalWatcher, say
     from reference.agreement import LARGEST_Z, check_against_volpath
 
     with TerminalWatcher(CHECK_GOAL.rel_error) as watcher:
         check = check_against_volpath(scene, CHECK_GOAL, watcher.reference)
     test = check.test
-    console.print(
+    say(
         f"volpath's image mean differs by {test.difference:+.4%} with a standard error of {test.standard_error:.4%}: "
         f"z = {test.z:+.2f}, {'agrees' if test.agrees else 'does NOT agree'} (|z| < {LARGEST_Z:g}). Allowed for: "
-        f"volpath stops short of a light, which brightens it by {check.shift:+.4%} here.",
-        highlight=False,
-        soft_wrap=True,
+        f"volpath stops short of a light, which brightens it by {check.shift:+.4%} here."
     )
     if not test.agrees:
         raise typer.Exit(1)

@@ -39,6 +39,9 @@ class Watcher:
     def reference(self, progress: Progress) -> None:
         """A reference got further."""
 
+    def estimated(self, reference: Reference) -> None:
+        """A scene's reference is there."""
+
 
 def run_suite(name: str, suite: Suite, parent: Path, watcher: Watcher) -> tuple[list[Row], Path]:
     """Run every case.
@@ -74,6 +77,7 @@ def run_suite(name: str, suite: Suite, parent: Path, watcher: Watcher) -> tuple[
             watcher.scene(scene)
             watcher.case(f"{scene.name}: reference", number, total)
             reference = estimate_reference(scene, suite.reference.goal(), watcher.reference)
+            watcher.estimated(reference)
             with Renderer(scene) as renderer:
                 for technique in techniques:
                     watcher.case(f"{scene.name}: {technique.name}", number, total)

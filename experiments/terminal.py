@@ -31,6 +31,16 @@ console = _console()
 notices = Console(stderr=True)
 
 
+def say(text: str) -> None:
+    """Print one line, whatever signs a path in it holds, and as long as it is."""
+    console.print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def warn(text: str) -> None:
+    """Print a notice: the work goes on, but its reader should know."""
+    notices.print(text, style="yellow", highlight=False, markup=False, soft_wrap=True)
+
+
 class TerminalWatcher(Watcher):
     """Progress bars for a run or for one reference; a context manager."""
 
@@ -84,14 +94,17 @@ class TerminalWatcher(Watcher):
         note = f"error {progress.rel_error:.2%} of {self._rel_error:.2%}, about {progress.seconds_left:.0f} s left"
         self._progress.update(self._estimate, completed=share, note=note)
 
+    def estimated(self, reference: Reference) -> None:
+        """Say so where the reference ran out of time."""
+        announce_accuracy(reference)
+
 
 def announce_stand_ins(scene: Scene) -> None:
     """Say which meshes are not the real ones, and the cure."""
     if scene.stand_ins:
-        notices.print(
-            f"[yellow]{scene.name}: a procedural stand-in serves for {', '.join(scene.stand_ins)}; "
-            "set AIRLIGHT_MESH_DIR to a folder with the mesh to use the real one.[/yellow]",
-            highlight=False,
+        warn(
+            f"{scene.name}: a procedural stand-in serves for {', '.join(scene.stand_ins)}; "
+            "set AIRLIGHT_MESH_DIR to a folder with the mesh to use the real one."
         )
 
 
@@ -99,16 +112,14 @@ def announce_variant() -> None:
     """Say so where the reference has to do without LLVM, or without the LLVM that was asked for."""
     choice, variant = choose_llvm(), mitsuba().variant()
     if choice.asked_for and choice.rejected and choice.rejected[0].path == choice.asked_for:
-        notices.print(
-            f"[yellow]DRJIT_LIBLLVM_PATH names {choice.asked_for}, which {choice.rejected[0].reason}; "
-            f"{'using ' + choice.usable.path if choice.usable else 'no other was found'}.[/yellow]",
-            highlight=False,
+        warn(
+            f"DRJIT_LIBLLVM_PATH names {choice.asked_for}, which {choice.rejected[0].reason}; "
+            f"{'using ' + choice.usable.path if choice.usable else 'no other was found'}."
         )
     if variant == "scalar_rgb":
-        notices.print(
-            "[yellow]The reference comes from Mitsuba's C++ volpath in scalar_rgb, slower and averaged over pixels "
-            f"instead of at their centres: {_why_scalar(choice)}.[/yellow]",
-            highlight=False,
+        warn(
+            "The reference comes from Mitsuba's C++ volpath in scalar_rgb, slower and averaged over pixels "
+            f"instead of at their centres: {_why_scalar(choice)}."
         )
 
 
@@ -118,14 +129,13 @@ def _why_scalar(choice: LlvmChoice) -> str:
     return "there is no LLVM that Dr.Jit can use (`make setup` installs one, `airlight doctor` says more)"
 
 
-def announce_accuracy(reference: Reference, asked: float) -> None:
+def announce_accuracy(reference: Reference) -> None:
     """Say so where a reference ran out of time."""
-    estimate = reference.estimate
+    estimate, asked = reference.estimate, reference.recipe["goal"]["rel_error"]
     if not estimate.reached:
-        notices.print(
-            f"[yellow]The reference stopped at its time limit with a relative standard error of "
-            f"{estimate.rel_error:.2%} where {asked:.2%} was asked for.[/yellow]",
-            highlight=False,
+        warn(
+            f"The reference stopped at its time limit with a relative standard error of "
+            f"{estimate.rel_error:.2%} where {asked:.2%} was asked for."
         )
 
 
