@@ -1,17 +1,20 @@
 # `make` alone lists what there is. Each target first sets up what is missing (scripts/setup.sh).
-.PHONY: help setup run test lock
+.PHONY: help setup ready run test lock
 .DEFAULT_GOAL := help
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
 
 setup:  ## virtual environment, OpenGL and LLVM: whatever is missing (PYTHON=... chooses the interpreter)
+	@scripts/setup.sh --check
+
+ready:
 	@scripts/setup.sh
 
-run: setup  ## the main job: the quick suite, techniques beside the reference
+run: ready  ## the main job: the quick suite, techniques beside the reference
 	@.venv/bin/airlight run quick
 
-test: setup  ## every check: lint, format, types, tests
+test: ready  ## every check: lint, format, types, tests
 	@echo "ruff check: lint";          .venv/bin/ruff check .
 	@echo "ruff format: layout";       .venv/bin/ruff format --check .
 	@echo "mypy: types";               .venv/bin/mypy

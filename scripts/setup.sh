@@ -2,6 +2,7 @@
 # Makes everything that airlight needs, and nothing twice: the virtual environment .venv, OpenGL without a window
 # (Mesa's software renderer where there is no other) and an LLVM that Dr.Jit works with. `make run` and `make test`
 # call it each time; when there is nothing to do it takes some milliseconds.
+#   scripts/setup.sh --check                   looks again at everything, also where an earlier call finished
 #   PYTHON=/path/to/python scripts/setup.sh    makes .venv with that Python instead of the first one on PATH
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -14,7 +15,7 @@ die() { printf 'setup: %s\n' "$*" >&2; exit 2; }
 stamp=.venv/.airlight-setup
 digest=$(cat requirements.lock pyproject.toml scripts/setup.sh | sha256sum | cut -d ' ' -f 1)
 reached=$([[ -x .venv/bin/python ]] && cat $stamp 2>/dev/null) || reached=
-[[ $reached != "$digest $PWD" ]] || exit 0
+[[ $reached != "$digest $PWD" || ${1:-} == --check ]] || exit 0
 
 # What is missing is found by trying it, so that nothing is installed where, say, a vendor's driver or LLVM 20 works.
 drjit_loads() { .venv/bin/python -c 'import drjit'; }
