@@ -54,9 +54,6 @@ class Geometry:
 
     def __init__(self, device: Device, scene: Scene) -> None:
         self.meshes = [MeshBuffers(device.context, mesh) for mesh in scene.meshes]
-        points = [mesh.vertices for mesh in scene.meshes]
-        # of all vertices, to fit the depth range
-        self.vertices = np.concatenate(points) if points else np.zeros((0, 3), np.float32)
 
     def release(self) -> None:
         """Give all buffers back."""
@@ -73,16 +70,28 @@ class GBuffer:
     normal_and_distance : texture RGBA32F   unit normal (0 for none), distance along the pixel's ray [scene unit],
                                         0 where there is no surface
     material : texture RGBA32F              reflectance, 1 if two-sided
+    triangle_normal : texture RGBA32F       normal of the triangle itself, of any length
     """
 
     normal_and_distance: Any
     material: Any
+    triangle_normal: Any
 
     def bind(self, first_unit: int) -> dict[str, int]:
-        """Bind both textures and give their uniforms."""
-        self.normal_and_distance.use(first_unit)
-        self.material.use(first_unit + 1)
-        return {"normal_and_distance": first_unit, "surface_material": first_unit + 1}
+        """Bind the textures and give their uniforms."""
+        units = {
+            "normal_and_distance": first_unit,
+            "surface_material": first_unit + 1,
+            "triangle_normal": first_unit + 2,
+        }
+        for unit, texture in zip(units.values(), self.textures, strict=True):
+            texture.use(unit)
+        return units
+
+    @property
+    def textures(self) -> tuple[Any, Any, Any]:
+        """All of them, in the order of the pass's outputs."""
+        return self.normal_and_distance, self.material, self.triangle_normal
 
 
 def camera_uniforms(camera: Camera) -> dict[str, Any]:
@@ -98,14 +107,14 @@ def camera_uniforms(camera: Camera) -> dict[str, Any]:
 def render_gbuffer(device: Device, geometry: Geometry, camera: Camera) -> GBuffer:
     """Rasterise the scene from the eye; the caller releases the textures."""
     context, size = device.context, (camera.width, camera.height)
-    buffers = GBuffer(device.texture(size, 4), device.texture(size, 4))
+    buffers = GBuffer(*(device.texture(size, 4) for _ in range(3)))
     depth = context.depth_renderbuffer(size)
-    target = context.framebuffer([buffers.normal_and_distance, buffers.material], depth)
+    target = context.framebuffer(buffers.textures, depth)
     target.use()
     target.clear()
     context.enable(context.DEPTH_TEST)
     program = device.program("geometry.frag.glsl", vertex="geometry.vert.glsl")
-    uniforms = camera_uniforms(camera) | {"world_to_clip": _world_to_clip(camera, geometry)}
+    uniforms = camera_uniforms(camera) | {"world_to_clip": _world_to_clip(camera)}
     for mesh in geometry.meshes:
         mesh.draw(program, uniforms | {"material": mesh.material})
     context.disable(context.DEPTH_TEST)
@@ -114,19 +123,9 @@ def render_gbuffer(device: Device, geometry: Geometry, camera: Camera) -> GBuffe
     return buffers
 
 
-def _world_to_clip(camera: Camera, geometry: Geometry) -> np.ndarray:
+def _world_to_clip(camera: Camera) -> np.ndarray:
     """World to clip space, with image row 0 at the first row of the target."""
     # Mitsuba's camera looks along +z with +x to the left; OpenGL's along -z with +x to the right
     view = np.diag([-1.0, 1.0, -1.0, 1.0]) @ np.linalg.inv(camera.to_world)
-    near, far = _depth_range(camera, -(geometry.vertices @ view[2, :3] + view[2, 3]))
-    projection = projection_matrix(camera.tan_half_x, camera.tan_half_y, near, far)
+    projection = projection_matrix(camera.tan_half_x, camera.tan_half_y, camera.near, camera.far)
     return np.diag([1.0, -1.0, 1.0, 1.0]) @ projection @ view
-
-
-def _depth_range(camera: Camera, depths: np.ndarray) -> tuple[float, float]:
-    """Clip distances as tight as the vertices allow: the depth buffer's precision goes with their ratio."""
-    if depths.size == 0:
-        return camera.near, camera.far
-    near = max(camera.near, float(depths.min()) * 0.999)
-    far = min(camera.far, float(depths.max()) * 1.001)
-    return (near, far) if near < far else (camera.near, camera.far)

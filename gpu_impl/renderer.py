@@ -98,6 +98,7 @@ class Renderer:
         if step > 1:
             scattering = upsample(device, scattering, camera, gbuffer, step)
         gbuffer.material.release()
+        gbuffer.triangle_normal.release()
         return surface, scattering, gbuffer.normal_and_distance
 
 

@@ -15,7 +15,9 @@ from scenes.model import Light
 
 # beyond this half-angle one flat map wastes its texels at the rim, and a cube serves
 WIDEST_FLAT_MAP = np.radians(60)
-NEAR, FAR = 1e-4, 1e6
+# no depth buffer is used and DEPTH_CLAMP keeps what lies outside, so that only their ratio has to be harmless
+NEAR, FAR = 1.0, 2.0
+DEPTH_CLAMP = 0x864F
 # (forward, up) of a cube's faces +x -x +y -y +z -z, in the order of tile_position() in shadow_lookup.glsl
 CUBE_FACES = (
     ((1, 0, 0), (0, 1, 0)),
@@ -79,12 +81,15 @@ def render_shadow_map(device: Device, geometry: Geometry, light: Light, size: in
     target.use()
     target.clear(red=3e38)
     context.disable(context.DEPTH_TEST)
+    # an occluder may be as near to the light as it likes
+    context.enable_direct(DEPTH_CLAMP)
     context.enable(context.BLEND)
     context.blend_equation = context.MIN
     for tile, matrix in enumerate(matrices):
         target.viewport = (tile * size, 0, size, size)
         for mesh in geometry.meshes:
             mesh.draw(program, {"world_to_clip": matrix, "light_position": tuple(light.position)})
+    context.disable_direct(DEPTH_CLAMP)
     context.blend_equation = context.FUNC_ADD
     context.disable(context.BLEND)
     target.release()

@@ -82,7 +82,7 @@ class Equiangular(PixelCentres):
     """The main estimator: the integrator `single_scattering` with stratified distances."""
 
     name = "equiangular"
-    version = 5
+    version = 6
     pixel_filter = "centre"
     layers: tuple[str, ...] = ("scattering",)
 

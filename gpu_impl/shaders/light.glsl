@@ -6,15 +6,16 @@ struct Passage { float h; float t_h; };
 
 Passage passage(Ray ray, Light light) {
     vec3 to_light = light.position - ray.o;
-    float t_h = dot(to_light, ray.d);
-    // The cross product keeps h accurate where the ray passes close by. A ray through the light meets a singularity
-    // that no pixel can show; h is kept at a millionth of the distance, which float32 resolves.
-    float h = length(cross(to_light, ray.d));
-    return Passage(max(h, 1e-6 * max(abs(t_h), abs(ray.t_max - t_h))), t_h);
+    // The cross product keeps h accurate where the ray passes close by, down to the rounding of to_light itself. Below
+    // that h is kept from vanishing: a ray through the light meets a singularity that no pixel can show, and one that
+    // runs away from it has a limit that does not depend on h.
+    float h = max(length(cross(to_light, ray.d)), max(1e-7 * length(to_light), 1e-15 * ray.t_max));
+    return Passage(h, dot(to_light, ray.d));
 }
 
 // Mitsuba's spot: linear in the angle between the beam's edge and the cutoff. 1 for a point light.
 float falloff(Light light, vec3 point) {
+    if (light.cutoff_angle > 1.5707) return 1.0;
     vec3 from_light = point - light.position;
     // atan, not acos: accurate near the axis too
     float angle = atan(length(cross(light.direction, from_light)), dot(light.direction, from_light));
@@ -27,19 +28,21 @@ float falloff(Light light, vec3 point) {
 vec2 cone_interval(Ray ray, Light light) {
     vec2 whole = vec2(0.0, ray.t_max);
     if (light.cutoff_angle > 1.5707) return whole;
-    // Counted from the light's projection s = t - t_h, where q is orthogonal to d and half the terms vanish:
-    // inside where (q.a + s d.a)^2 >= cos^2 (|q|^2 + s^2) on the nappe that is lit.
+    // Counted from the light's projection, s = t - t_h, where q is orthogonal to d: inside the double cone where
+    // |(q + s d) x axis|^2 <= sin^2 |q + s d|^2. With the sine a narrow cone keeps its digits.
     vec3 to_light = light.position - ray.o;
     float t_h = dot(to_light, ray.d);
     vec3 q = ray.d * t_h - to_light;
-    float cosine = cos(light.cutoff_angle), c2 = cosine * cosine;
+    float sine = sin(light.cutoff_angle), s2 = sine * sine;
     float da = dot(ray.d, light.direction), qa = dot(q, light.direction);
-    float a = da * da - c2, b = da * qa, c = qa * qa - c2 * dot(q, q);
-    if (abs(a) < 1e-7) a = a < 0.0 ? -1e-7 : 1e-7;
+    vec3 dx = cross(ray.d, light.direction), qx = cross(q, light.direction);
+    float a = s2 - dot(dx, dx), b = -dot(qx, dx), c = s2 * dot(q, q) - dot(qx, qx);
+    if (abs(a) < 1e-9) a = a < 0.0 ? -1e-9 : 1e-9;
+    // where a > 0 it is negative only by rounding: such a ray ends up inside a nappe whatever happens
     float discriminant = b * b - a * c;
-    if (discriminant <= 0.0) return vec2(0.0);
+    if (discriminant <= 0.0 && a < 0.0) return vec2(0.0);
     // the root without cancellation first, the other from the product of the two
-    float r = -(b + (b < 0.0 ? -1.0 : 1.0) * sqrt(discriminant));
+    float r = -(b + (b < 0.0 ? -1.0 : 1.0) * sqrt(max(discriminant, 0.0)));
     float s0 = r / a, s1 = r == 0.0 ? s0 : c / r;
     vec2 s = vec2(min(s0, s1), max(s0, s1));
     if (a > 0.0) {

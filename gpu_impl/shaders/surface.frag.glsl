@@ -6,6 +6,7 @@
 uniform Light light;
 uniform sampler2D normal_and_distance;
 uniform sampler2D surface_material;
+uniform sampler2D triangle_normal;
 uniform float texel_slope;   // width of a shadow-map texel at distance 1
 out vec4 result;
 
@@ -19,10 +20,12 @@ void main() {
     result = vec4(0.0);
     if (surface.w == 0.0) return;
     // Mitsuba's diffuse: black unless eye and light are on the front side; twosided: on the same side
-    if (cos_eye * cos_light <= 0.0 || (material.a == 0.0 && cos_eye < 0.0)) return;
+    if (!(cos_eye * cos_light > 0.0) || (material.a == 0.0 && cos_eye < 0.0)) return;
     cos_light = abs(cos_light);
-    // A texel holds the distance at its centre; across it a slanted surface varies by this much.
-    float bias = texel_slope * d * min(sqrt(1.0 - min(cos_light * cos_light, 1.0)) / cos_light, 20.0) + 1e-4 * d;
+    // A texel holds the distance at its centre; across it a slanted triangle varies by this much.
+    vec3 flat_normal = texelFetch(triangle_normal, pixel, 0).xyz;
+    float slope = length(cross(flat_normal, to_light)) / max(abs(dot(flat_normal, to_light)), 1e-30);
+    float bias = texel_slope * d * min(slope, 20.0) + 1e-4 * d;
     if (d - bias > nearest_surface(light, point)) return;
     result.rgb = material.rgb * 0.318309886183791 * cos_light * light.intensity * falloff(light, point) / (d * d)
                * exp(-sigma_t * (surface.w + d));

@@ -94,10 +94,10 @@ def test_light_that_reaches_the_fog_unattenuated_does_not_agree(isotropic: Estim
     ("method", "right", "wrong"),
     [
         ("scattering", "ray, t +", "ray,"),  # the eye's leg is not attenuated
-        ("scattering", "~scene.ray_test(mei.spawn_ray_to(ds.p), active)", "(ds.dist > 0)"),  # no shadows in fog
+        ("scattering", "sees(scene, ds, FOG_MARGIN, active)", "(ds.dist > 0)"),  # no shadows in fog
         ("scattering", "* inverse_pdf", "* (t_max - begin)"),  # as if distances were uniform
         ("surface", "ray, si.t +", "ray,"),
-        ("surface", "~scene.ray_test(si.spawn_ray_to(ds.p), hit)", "(ds.dist > 0)"),  # no shadows on surfaces
+        ("surface", "sees(scene, ds, SURFACE_MARGIN, hit)", "(ds.dist > 0)"),  # no shadows on surfaces
         ("surface", "+= value", "+= value / dr.maximum(si.to_local(ds.d).z, 0.01)"),  # no cosine
     ],
 )
