@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import stat
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from scenes.errors import InputError
+from scenes.replacing import replacing
 
 Layers = dict[str, np.ndarray]
 PREFIX = "airlight:"
@@ -39,18 +39,12 @@ def write_exr(path: Path, layers: Mapping[str, np.ndarray], metadata: Mapping[st
     header |= {PREFIX + key: str(value) for key, value in metadata.items()}
     path = Path(path)
     check_writable(path)
-    temporary = None
-    try:
-        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".exr.part")
-        os.close(handle)
-        temporary = Path(name)
-        OpenEXR.File(header, channels).write(str(temporary))
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    except (OSError, RuntimeError) as error:
-        if temporary:
-            temporary.unlink(missing_ok=True)
-        raise InputError(f"{path} cannot be written ({error}): choose another --out or make its folder.") from None
+    with replacing(path) as beside:
+        try:
+            OpenEXR.File(header, channels).write(str(beside))
+        except RuntimeError as error:
+            # what OpenEXR makes of a full disk
+            raise OSError(str(error)) from None
 
 
 def check_writable(path: Path) -> None:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
-import os
-import tempfile
 from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 import platformdirs
 from numpy.typing import NDArray
+
+from scenes.errors import InputError
+from scenes.replacing import CACHE_CURE, make_folder, replacing
 
 
 def hdr_flip(test: NDArray[np.floating], reference: NDArray[np.floating]) -> float:
@@ -44,11 +46,7 @@ def _evaluate(reference: NDArray[np.float32], test: NDArray[np.float32]) -> floa
 
 def _remember(path: Path, value: float) -> None:
     """Keep the number; where the cache cannot be written it is computed again next time."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent)
-        with os.fdopen(handle, "w") as file:
-            json.dump(value, file)
-        os.replace(name, path)
-    except OSError:
-        return
+    with contextlib.suppress(InputError):
+        make_folder(path.parent, CACHE_CURE)
+        with replacing(path, CACHE_CURE) as beside:
+            beside.write_text(json.dumps(value))

@@ -23,6 +23,7 @@ from reference.estimate import Reference, estimate_reference
 from scenes.errors import InputError
 from scenes.loader import load
 from scenes.model import Scene
+from scenes.replacing import replacing
 
 Row = dict[str, Any]
 
@@ -127,9 +128,8 @@ def write_tables(folder: Path, rows: list[Row]) -> None:
 
     table = polars.DataFrame(rows, infer_schema_length=None)
     for ending, write in ((".csv", table.write_csv), (".parquet", table.write_parquet)):
-        temporary = folder / f"results{ending}.part"
-        write(temporary)
-        temporary.replace(folder / f"results{ending}")
+        with replacing(folder / f"results{ending}") as beside:
+            write(beside)
 
 
 def _row(scene: Scene, frame: Frame, reference: Reference, layer: str, metrics: Metrics) -> Row:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -13,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.metrics import Image, signed_relative_error
+from scenes.replacing import replacing
 
 # the error's colours run from -SCALE to +SCALE on every sheet, so that sheets can be compared
 SCALE = 0.2
@@ -79,12 +78,8 @@ class Sheet:
         self._pictures[3].set_clim(0, float(np.percentile(absolute, 99.9)) or 1.0)
         self._heading.set_text(f"{title}\n{below}")
         self._note.set_text(note)
-        # a name that no file of the user's can have
-        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".png.part")
-        os.close(handle)
-        self._figure.savefig(temporary, format="png")
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
+        with replacing(path) as beside:
+            self._figure.savefig(beside, format="png")
 
 
 def summary(row: Mapping[str, Any]) -> str:

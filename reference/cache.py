@@ -6,7 +6,6 @@ import contextlib
 import hashlib
 import json
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ import numpy as np
 import platformdirs
 
 from scenes.errors import InputError
+from scenes.replacing import CACHE_CURE, make_folder, replacing
 
 Recipe = dict[str, Any]
 Arrays = dict[str, np.ndarray]
@@ -53,41 +53,22 @@ def load(recipe: Recipe) -> tuple[Arrays, Recipe] | None:
 
 def check_writable() -> None:
     """Raise InputError where an entry could not be kept: better before the estimate than after it."""
-    try:
-        folder().mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder()):
-            return
-    except OSError as error:
-        raise _unwritable(error) from None
+    make_folder(folder(), CACHE_CURE)
+    if not os.access(folder(), os.W_OK):
+        raise InputError(f"The references cannot be kept in {folder()}: {CACHE_CURE}.")
 
 
 def store(recipe: Recipe, arrays: Arrays, record: Recipe) -> None:
-    """Write an entry beside its place and rename it, so that a half-written one is never read.
+    """Keep an entry, whole or not at all.
 
     Raises
     ------
     InputError
         The cache folder cannot be written.
     """
-    path = _path(recipe)
-    temporary = None
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as file:
-            temporary = Path(file.name)
-            np.savez(file, record=np.array(json.dumps(record | {"recipe": recipe})), **arrays)  # type: ignore[arg-type]
-        os.replace(temporary, path)
-    except OSError as error:
-        if temporary:
-            temporary.unlink(missing_ok=True)
-        raise _unwritable(error) from None
-
-
-def _unwritable(error: OSError) -> InputError:
-    return InputError(
-        f"The reference cannot be kept in {folder()} ({error.strerror}): make room there, make it writable, or set "
-        "XDG_CACHE_HOME to another folder."
-    )
+    make_folder(folder(), CACHE_CURE)
+    with replacing(_path(recipe), CACHE_CURE) as beside, beside.open("wb") as file:
+        np.savez(file, record=np.array(json.dumps(record | {"recipe": recipe})), **arrays)  # type: ignore[arg-type]
 
 
 def _path(recipe: Recipe) -> Path:

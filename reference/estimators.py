@@ -75,7 +75,8 @@ class PixelCentres:
             value = radiance(self.rays(index))
             mean = dr.block_sum(value, self.samples_per_pass) / self.samples_per_pass
             parts.append(np.array(mean, dtype=np.float64).T)
-        return np.concatenate(parts).reshape(*self.shape, 3)
+        # contiguous, so that sums over it come out the same when it is read back from the cache
+        return np.ascontiguousarray(np.concatenate(parts)).reshape(*self.shape, 3)
 
 
 class Equiangular(PixelCentres):
@@ -97,7 +98,7 @@ class Equiangular(PixelCentres):
         ray = self.rays(dr.arange(mi.UInt32, self.shape[0] * self.shape[1]))
         si = self.mitsuba.scene.ray_intersect(ray)
         surface = self.integrator.surface(self.mitsuba.scene, ray, si, self.mitsuba.medium)
-        return {"surface": np.array(surface, dtype=np.float64).T.reshape(*self.shape, 3)}
+        return {"surface": np.ascontiguousarray(np.array(surface, dtype=np.float64).T).reshape(*self.shape, 3)}
 
     def one_pass(self, seed: int) -> dict[str, Image]:
         """Airlight along each ray."""

@@ -22,6 +22,9 @@ from pathlib import Path
 
 import platformdirs
 
+from scenes.errors import InputError
+from scenes.replacing import replacing
+
 VARIABLE = "DRJIT_LIBLLVM_PATH"  # where Dr.Jit itself looks first
 
 _TIMEOUT = 30.0  # s; a probe takes 0.2 s, so this only ends one that hangs
@@ -182,8 +185,7 @@ def _remember(llvm: Llvm) -> None:
     key = _key(llvm.path)
     if key is None or _remembered(llvm.path) == llvm:
         return
-    with contextlib.suppress(OSError):  # a home that cannot be written only costs the probe each time
+    with contextlib.suppress(InputError, OSError):  # a home that cannot be written only costs the probe each time
         _memory().parent.mkdir(parents=True, exist_ok=True)
-        beside = _memory().with_suffix(f".{os.getpid()}")  # renamed when whole: a reader never sees half of it
-        beside.write_text(json.dumps({"key": key, "version": llvm.version}), encoding="utf-8")
-        beside.replace(_memory())
+        with replacing(_memory()) as beside:
+            beside.write_text(json.dumps({"key": key, "version": llvm.version}), encoding="utf-8")

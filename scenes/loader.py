@@ -21,7 +21,7 @@ from scenes.errors import InputError
 from scenes.mesh_files import sha256
 from scenes.mitsuba_setup import mitsuba
 from scenes.model import Camera, Light, Mesh, Scene
-from scenes.shapes import load_shape
+from scenes.shapes import FROM_FILE, load_shape
 from scenes.xml_nodes import Node, is_similarity
 
 LARGEST_SIDE = 16384
@@ -66,7 +66,7 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
     # definitions that others refer to; who uses them has read them
     root.children("Medium", "BSDF", "PhaseFunction")
     root.finish()
-    return Scene(path.stem, path, texts, camera, meshes, lights, medium, phase, state, _digest(state, meshes))
+    return Scene(path.stem, path, texts, camera, meshes, lights, medium, phase, state, _digest(state))
 
 
 def _parse(path: Path, parameters: dict[str, str]) -> Any:
@@ -232,12 +232,17 @@ def _meshes(root: Node, path: Path) -> tuple[Mesh, ...]:
     return tuple(meshes)
 
 
-def _digest(state: Any, meshes: tuple[Mesh, ...]) -> str:
+def _digest(state: Any) -> str:
+    """Hash of the parsed scene, with the contents of meshes in place of their paths."""
     import mitsuba.parser as parser
 
-    text = parser.write_string(state)
-    for mesh in meshes:
-        if mesh.file:
+    paths = {}
+    for node in state.nodes:
+        if node.props.plugin_name() in FROM_FILE and "filename" in node.props:
             # by content: the same mesh in another folder is the same scene
-            text = text.replace(str(mesh.file.path), sha256(mesh.file.path))
+            paths[node] = node.props["filename"]
+            node.props["filename"] = sha256(paths[node])
+    text = parser.write_string(state)
+    for node, path in paths.items():
+        node.props["filename"] = path
     return hashlib.sha256(text.encode()).hexdigest()

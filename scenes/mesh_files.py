@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -15,6 +14,7 @@ import platformdirs
 from scenes import procedural
 from scenes.errors import InputError
 from scenes.mesh_readers import read_mesh
+from scenes.replacing import CACHE_CURE, make_folder, replacing
 from scenes.triangles import Triangles, ply_bytes, vertex_normals
 
 __all__ = ["MeshFile", "Triangles", "available", "find_mesh", "read_mesh", "sha256", "vertex_normals"]
@@ -137,13 +137,6 @@ def _make(mesh: MeshFile) -> None:
             f"The mesh '{name}' came out different from the recorded one on this machine; install the versions of "
             f"requirements.lock (marching cubes are scikit-image's), or put a mesh of that name into {VARIABLE}."
         )
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        # Written beside and moved, so that a second process never reads half a file.
-        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=name, delete=False) as file:
-            file.write(data)
-        os.replace(file.name, path)
-    except OSError as error:
-        raise InputError(
-            f"{path}: cannot be written ({error.strerror}); make the folder writable or set XDG_CACHE_HOME to another."
-        ) from None
+    make_folder(path.parent, CACHE_CURE)
+    with replacing(path, CACHE_CURE) as beside:
+        beside.write_bytes(data)

@@ -114,8 +114,7 @@ def test_a_half_written_entry_is_never_read(monkeypatch: pytest.MonkeyPatch) -> 
         patch.setattr(np, "savez", dies)
         with pytest.raises(KeyboardInterrupt):
             cache.store(RECIPE, ARRAYS, RECORD)
-    (left,) = cache.folder().iterdir()
-    assert left.suffix == ".part"
+    assert list(cache.folder().iterdir()) == []
     assert cache.load(RECIPE) is None
     cache.store(RECIPE, ARRAYS, RECORD)
     assert cache.load(RECIPE) is not None
@@ -127,7 +126,7 @@ def test_a_full_disk_is_one_sentence_and_leaves_nothing(monkeypatch: pytest.Monk
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(np, "savez", full)
-    with pytest.raises(InputError, match=r"cannot be kept in .* \(No space left on device\).*XDG_CACHE_HOME"):
+    with pytest.raises(InputError, match=r"cannot be written \(No space left on device\).*XDG_CACHE_HOME"):
         cache.store(RECIPE, ARRAYS, RECORD)
     assert list(cache.folder().iterdir()) == []
 
@@ -137,7 +136,7 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(tmp_path: Path, monkeypatc
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     assert cache.load(RECIPE) is None
-    with pytest.raises(InputError, match="cannot be kept in"):
+    with pytest.raises(InputError, match=r"cannot be made .*XDG_CACHE_HOME"):
         cache.store(RECIPE, ARRAYS, RECORD)
 
 

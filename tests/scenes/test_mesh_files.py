@@ -127,7 +127,7 @@ def test_a_missing_mesh_folder_is_refused(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_a_cache_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
     written(tmp_path / "cache", "a file where the folder should be")
-    with pytest.raises(InputError, match=r"cannot be written.*XDG_CACHE_HOME"):
+    with pytest.raises(InputError, match=r"cannot be made.*XDG_CACHE_HOME"):
         find_mesh("scorpion.ply", tmp_path)
 
 
