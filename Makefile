@@ -1,4 +1,4 @@
-# `make` alone lists what there is. Each target first sets up what is missing (scripts/setup.sh).
+# `make` alone lists what there is. `run` and `test` first set up what is missing.
 .PHONY: help setup ready run test lock
 .DEFAULT_GOAL := help
 

@@ -46,7 +46,9 @@ RelError = Annotated[
         help="Relative standard error to reach, at the 95th percentile of lit pixels of the scattering layer."
     ),
 ]
-TimeLimit = Annotated[float, typer.Option(help="Seconds after which the reference stops where it is.")]
+TimeLimit = Annotated[
+    float, typer.Option(help="Seconds after which the reference stops where it is; 8 passes are always made.")
+]
 
 
 def main() -> None:
@@ -65,8 +67,8 @@ def doctor() -> None:
 
     Exits with 1 where the main job cannot run.  Example: airlight doctor
     """
+    from experiments.console import console
     from experiments.doctor import examine, report
-    from experiments.terminal import console
 
     findings = examine()
     console.print(report(findings))
@@ -80,8 +82,8 @@ def list_() -> None:
 
     Example: airlight list
     """
+    from experiments.console import console
     from experiments.listing import listing
-    from experiments.terminal import console
 
     for table in listing():
         console.print(table)
@@ -104,9 +106,10 @@ def render(
 
     Example: airlight render donut_dragon --technique Weng2010 --size 512 512 --out dragon.exr
     """
+    from experiments.console import say
     from experiments.exr import check_writable
     from experiments.pictures import write_frame
-    from experiments.terminal import announce_stand_ins, say
+    from experiments.terminal import announce_stand_ins
     from gpu_impl.renderer import Renderer
     from gpu_impl.techniques import find_technique
     from scenes.loader import load
@@ -141,9 +144,10 @@ def reference(
 
     Example: airlight reference sphere --size 256 256 --rel-error 0.005 --out sphere.exr
     """
+    from experiments.console import say
     from experiments.exr import check_writable
     from experiments.pictures import write_reference
-    from experiments.terminal import TerminalWatcher, announce_accuracy, announce_stand_ins, announce_variant, say
+    from experiments.terminal import TerminalWatcher, announce_accuracy, announce_stand_ins, announce_variant
     from scenes.loader import load
     from scenes.mitsuba_setup import mitsuba
 
@@ -186,7 +190,8 @@ def compare(
     from dataclasses import asdict
 
     from experiments.compare import compare_files
-    from experiments.terminal import console, metrics_table, say
+    from experiments.console import console, say
+    from experiments.terminal import metrics_table
 
     metrics = compare_files(picture, truth, layer, heatmap)
     if json:
@@ -208,8 +213,9 @@ def run(
 
     Example: airlight run quick
     """
+    from experiments.console import console, say
     from experiments.suite import load_suite
-    from experiments.terminal import TerminalWatcher, announce_variant, console, results_table, say
+    from experiments.terminal import TerminalWatcher, announce_variant, results_table
 
     name, loaded = load_suite(suite)
     # says which Mitsuba serves before anything is computed
@@ -235,7 +241,8 @@ def _parameters(given: list[str] | None) -> dict[str, str]:
 
 
 def _check_against_volpath(scene: Scene) -> None:
-    from experiments.terminal import TerminalWatcher, say
+    from experiments.console import say
+    from experiments.terminal import TerminalWatcher
     from reference.agreement import LARGEST_Z, check_against_volpath
 
     with TerminalWatcher(CHECK_GOAL.rel_error) as watcher:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 import sys
 from dataclasses import dataclass
+from importlib.metadata import requires
 
 from rich.table import Table
 
 from experiments.provenance import package_version
 from scenes.errors import InputError
-
-PACKAGES = ("mitsuba", "drjit", "moderngl", "numpy", "OpenEXR", "trimesh", "colour-science", "flip-evaluator", "polars")
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,17 @@ class Finding:
 
 
 def examine() -> list[Finding]:
-    """Look at everything."""
-    return [*_python(), _gl(), *_mitsuba(), *_meshes()]
+    """Look at everything; whatever a part raises is what was found of it."""
+    findings = []
+    for what, look in (("Python", _python), ("OpenGL", _gl), ("Mitsuba", _mitsuba), ("meshes", _meshes)):
+        try:
+            findings += look()
+        except InputError as error:
+            findings.append(Finding(what, "missing", "does not work", str(error)))
+        except Exception as error:
+            # a package that is broken or gone raises what it likes
+            findings.append(Finding(what, "missing", f"{type(error).__name__}: {error}", "run `make setup`"))
+    return findings
 
 
 def report(findings: list[Finding]) -> Table:
@@ -51,22 +60,21 @@ def _python() -> list[Finding]:
             "" if supported else "use Python 3.11 to 3.13",
         )
     ]
-    versions = {name: package_version(name) for name in PACKAGES}
+    # "name~=1.2; extra == ..." are not needed to run
+    needed = [re.split(r"[^\w.-]", line)[0] for line in requires("airlight") or () if "extra ==" not in line]
+    versions = {name: package_version(name) for name in needed}
     absent = [name for name, version in versions.items() if version == "missing"]
     detail = ", ".join(f"{name} {version}" for name, version in versions.items())
     cure = "run `make setup`" if absent else ""
     return [*found, Finding("packages", "missing" if absent else "ok", detail, cure)]
 
 
-def _gl() -> Finding:
+def _gl() -> list[Finding]:
     from gpu_impl.context import gl_info, shared_context
 
-    try:
-        info = gl_info(shared_context())
-    except InputError as error:
-        return Finding("OpenGL", "missing", "none", str(error))
+    info = gl_info(shared_context())
     note = " (software: timings are wall clock)" if info.is_software else ""
-    return Finding("OpenGL", "ok", f"{info.renderer}, {info.version}{note}")
+    return [Finding("OpenGL", "ok", f"{info.renderer}, {info.version}{note}")]
 
 
 def _mitsuba() -> list[Finding]:
@@ -85,23 +93,20 @@ def _mitsuba() -> list[Finding]:
     try:
         mi = mitsuba()
     except InputError as error:
-        return [llvm, Finding("Mitsuba variants", "missing", "none", str(error))]
+        return [llvm, Finding("Mitsuba", "missing", "does not work", str(error))]
     works = {variant: variant_works(mi, variant, choice) for variant in VARIANTS}
     lines = [f"{variant}: {'works' if ok else 'does not work'}" for variant, ok in works.items()]
     used = mi.variant()
     slow = used == "scalar_rgb"
     cure = "references are slow and averaged over pixels until an LLVM works" if slow else ""
-    return [llvm, Finding("Mitsuba variants", "note" if slow else "ok", "\n".join([*lines, f"used: {used}"]), cure)]
+    return [llvm, Finding("Mitsuba", "note" if slow else "ok", "\n".join([*lines, f"used: {used}"]), cure)]
 
 
 def _meshes() -> list[Finding]:
     from scenes.mesh_files import available
 
     folder = os.environ.get("AIRLIGHT_MESH_DIR", "not set")
-    try:
-        meshes = available()
-    except InputError as error:
-        return [Finding("meshes", "missing", f"AIRLIGHT_MESH_DIR: {folder}", str(error))]
+    meshes = available()
     stand_ins = any(mesh.is_stand_in for mesh in meshes)
     lines = [f"{mesh.name}: {mesh.origin}" for mesh in meshes]
     cure = "set AIRLIGHT_MESH_DIR to a folder with the meshes to use the real ones" if stand_ins else ""

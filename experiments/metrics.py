@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.flip import hdr_flip
+from reference.brightness import darkest
 from scenes.errors import InputError
 
 Image = NDArray[np.floating]
-# A pixel darker than this share of the reference's mean counts as bright as that: in an umbra relative errors of next
-# to nothing would otherwise decide. relMSE's epsilon is its square.
-DARKEST = 0.01
 
 
 @dataclass(frozen=True)
@@ -22,14 +20,15 @@ class Metrics:
 
     Relative errors (mean and percentiles) count the values that are not zero in both pictures: outside a spot's cone
     every technique is right, and how much of that an image shows is no merit.
+    The floor is 1 % of the median of the lit reference (reference/brightness.py).
 
     Attributes
     ----------
-    rel_mse : float            mean of (t - r)^2 / (r^2 + eps), eps = (0.01 mean r)^2
+    rel_mse : float            mean of (t - r)^2 / (r^2 + eps), eps = floor^2
     rmse : float               root of the mean of (t - r)^2 [radiance]
     bias : float               sqrt(max(0, MSE - mean variance of the reference)) [radiance]: the technique's own error
-    mean_rel : float           mean of (t - r) / max(r, 0.01 mean r)
-    rel_50, rel_95, rel_99     percentiles of |t - r| / max(r, 0.01 mean r)
+    mean_rel : float           mean of (t - r) / max(r, floor)
+    rel_50, rel_95, rel_99     percentiles of |t - r| / max(r, floor)
     image_mean_rel : float     (mean t - mean r) / mean r
     flip : float               mean HDR-FLIP (Andersson et al. 2021), 0 to 1
     """
@@ -46,9 +45,9 @@ class Metrics:
 
 
 def signed_relative_error(test: Image, reference: Image) -> NDArray[np.float64]:
-    """(t - r) / max(r, 0.01 mean r), same shape as the images."""
+    """(t - r) / max(r, floor), same shape as the images."""
     reference = np.asarray(reference, np.float64)
-    return (np.asarray(test, np.float64) - reference) / np.maximum(reference, DARKEST * reference.mean())
+    return (np.asarray(test, np.float64) - reference) / np.maximum(reference, darkest(reference))
 
 
 def measure(test: Image, reference: Image, standard_error: Image | None = None) -> Metrics:
@@ -80,7 +79,7 @@ def measure(test: Image, reference: Image, standard_error: Image | None = None) 
     relative = signed_relative_error(test, reference)[(test != 0) | (reference != 0)]
     percentiles = np.percentile(np.abs(relative), [50, 95, 99])
     return Metrics(
-        rel_mse=float(np.mean(squared / (reference**2 + (DARKEST * reference.mean()) ** 2))),
+        rel_mse=float(np.mean(squared / (reference**2 + darkest(reference) ** 2))),
         rmse=rmse,
         bias=bias,
         mean_rel=float(relative.mean()),

@@ -8,10 +8,13 @@ from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from gpu_impl.frame import Frame
-from reference.estimate import Reference
-from scenes.model import Scene
+if TYPE_CHECKING:
+    # the doctor asks for versions where the rest may not import
+    from gpu_impl.frame import Frame
+    from reference.estimate import Reference
+    from scenes.model import Scene
 
 
 @cache

@@ -64,6 +64,14 @@ class Suite(_Strict):
                 raise ValueError(f"two scenes are called {name}")
         return scenes
 
+    @field_validator("techniques")
+    @classmethod
+    def _cases_differ(cls, techniques: list[TechniqueChoice]) -> list[TechniqueChoice]:
+        for choice in techniques:
+            if techniques.count(choice) > 1:
+                raise ValueError(f"{choice.name} stands there twice with the same settings")
+        return techniques
+
     @field_validator("parameters")
     @classmethod
     def _size_is_apart(cls, parameters: dict[str, str | int | float]) -> dict[str, str | int | float]:

@@ -7,10 +7,10 @@ from types import TracebackType
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from experiments.console import notices, warn
 from experiments.metrics import Metrics
 from experiments.runner import Row, Watcher
 from reference.convergence import Progress as Convergence
@@ -18,27 +18,6 @@ from reference.estimate import Reference
 from scenes.llvm import LlvmChoice, choose_llvm
 from scenes.mitsuba_setup import mitsuba
 from scenes.model import Scene
-
-
-def _console() -> Console:
-    """Standard output; where no terminal says how wide it is, wide enough for the table of results."""
-    found = Console()
-    return found if found.is_terminal else Console(width=max(found.width, 124))
-
-
-console = _console()
-# notices go where they do not disturb --json
-notices = Console(stderr=True)
-
-
-def say(text: str) -> None:
-    """Print one line, whatever signs a path in it holds, and as long as it is."""
-    console.print(text, highlight=False, markup=False, soft_wrap=True)
-
-
-def warn(text: str) -> None:
-    """Print a notice: the work goes on, but its reader should know."""
-    notices.print(text, style="yellow", highlight=False, markup=False, soft_wrap=True)
 
 
 class TerminalWatcher(Watcher):
@@ -174,9 +153,9 @@ def results_table(rows: list[Row]) -> Table:
     first = rows[0]
     starred = " * with stand-in meshes." if any(row["stand_ins"] for row in rows) else ""
     table.caption = (
-        "median, 95 %, 99 % of |t - r| / max(r, 1 % of the mean r) where either is lit; mean +- of the same with its "
-        "sign. bias: RMSE without the reference's noise. FLIP all: of the composite. noise: relative standard error of "
-        "the reference, 95 %."
+        "median, 95 %, 99 % of |t - r| / max(r, 1 % of the lit median) where either is lit; mean +- of the same with "
+        "its sign. bias: RMSE without the reference's noise. FLIP all: of the composite. noise: relative standard "
+        "error of the reference, 95 %."
         f"{starred}\n{first['gl_renderer']}; reference {first['estimator']}, {first['variant']}."
     )
     return table

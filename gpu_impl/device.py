@@ -6,11 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from gpu_impl.context import gl_info, shared_context
-from gpu_impl.quadrature_nodes import gauss_legendre_glsl
 from gpu_impl.shader_source import ShaderSource, compile_program
-
-QUADRATURE_NODES = 24
-GENERATED = {"<gauss-legendre>": gauss_legendre_glsl(QUADRATURE_NODES)}
 
 
 class Device:
@@ -33,6 +29,7 @@ class Device:
         vertex: str = "fullscreen.vert.glsl",
         defines: Mapping[str, object] | None = None,
         includes: Mapping[str, str] | None = None,
+        generated: Mapping[str, str] | None = None,
     ) -> Any:
         """Return the program of two shader files below `shaders/`; see `ShaderSource` for the rest."""
         defines, includes = defines or {}, includes or {}
@@ -41,7 +38,7 @@ class Device:
             self._programs[key] = compile_program(
                 self.context,
                 ShaderSource(vertex),
-                ShaderSource(fragment, defines, includes, GENERATED),
+                ShaderSource(fragment, defines, includes, generated),
             )
         return self._programs[key]
 

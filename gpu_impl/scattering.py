@@ -26,14 +26,16 @@ def add_scattering(
 ) -> None:
     """Add one light's airlight to `target`, whose pixels stand for every N-th of the image's."""
     grey = np.ptp(np.broadcast_to(scene.medium.sigma_t, 3)) == 0
+    model = AIRLIGHT_MODELS[technique.airlight]
     program = device.program(
         "scattering.frag.glsl",
         defines={"GREY": int(grey), "TILES": tile_count(light), "STEPS": technique.steps},
         includes={
-            "<airlight>": AIRLIGHT_MODELS[technique.airlight].source,
+            "<airlight>": model.source,
             "<visibility>": VISIBILITIES[technique.visibility].source,
             "<phase>": f"phase/{scene.phase.name}.glsl",
         },
+        generated=model.generated,
     )
     set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light))
     set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))

@@ -16,7 +16,7 @@ def add_surface(
     device: Device, target: Any, scene: Scene, light: Light, gbuffer: GBuffer, shadow_map: ShadowMap
 ) -> None:
     """Add one light's direct light on diffuse surfaces, attenuated on both legs, to `target`."""
-    program = device.program("surface.frag.glsl", defines={"GREY": 1, "TILES": tile_count(light)})
+    program = device.program("surface.frag.glsl", defines={"TILES": tile_count(light)})
     set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light))
     set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))
     device.fill(program, target, add=True)

@@ -5,25 +5,28 @@ Adding a strategy or a model takes one GLSL file under `shaders/` and one line h
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from analytic.phase import Phase
+from gpu_impl.quadrature_nodes import gauss_legendre_glsl
 from scenes.errors import InputError
 
 DOWNSAMPLES = (1, 2, 4, 8)
 MOST_STEPS = 1 << 20
 CELL_STEPS = 128
+QUADRATURE_NODES = 24
 
 
 @dataclass(frozen=True)
-class AirlightModel:
+class AirlightShader:
     """How much light one lit piece of a ray sends to the eye."""
 
     source: str
     what: str
     phases: tuple[str, ...] | None = None  # the phase functions it takes; None for all
+    generated: Mapping[str, str] = field(default_factory=dict)  # texts of includes that are computed
 
 
 @dataclass(frozen=True)
@@ -35,9 +38,13 @@ class Visibility:
 
 
 AIRLIGHT_MODELS = {
-    "riemann": AirlightModel("airlight/riemann.glsl", "one point sample a piece (Nishita 1987)"),
-    "weng2010": AirlightModel("airlight/weng2010.glsl", "isotropic closed form, repaired", ("isotropic",)),
-    "quadrature": AirlightModel("airlight/quadrature.glsl", "24-node Gauss-Legendre under a rational map"),
+    "riemann": AirlightShader("airlight/riemann.glsl", "one point sample a piece (Nishita 1987)"),
+    "weng2010": AirlightShader("airlight/weng2010.glsl", "isotropic closed form, repaired", ("isotropic",)),
+    "quadrature": AirlightShader(
+        "airlight/quadrature.glsl",
+        f"{QUADRATURE_NODES}-node Gauss-Legendre under a rational map",
+        generated={"<gauss-legendre>": gauss_legendre_glsl(QUADRATURE_NODES)},
+    ),
 }
 
 VISIBILITIES = {

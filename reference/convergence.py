@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from reference.brightness import darkest
 from reference.estimators import Estimator, Image
 from reference.goal import Goal
 from scenes.errors import InputError
@@ -18,9 +19,6 @@ FEWEST_PASSES = 32
 # a time limit stops earlier, with the error bar that there is
 FEWEST_IN_TIME = 8
 PERCENTILE = 95
-# pixels darker than this share of the image mean count as if they were as bright as it: in an umbra the relative
-# error of next to nothing would otherwise decide
-DARKEST = 0.01
 
 
 @dataclass(frozen=True)
@@ -128,16 +126,19 @@ def converge(estimator: Estimator, goal: Goal, report: Callable[[Progress], None
 
 
 def relative_error(mean: Image, standard_error: Image) -> float:
-    """Standard error over mean at the 95th percentile of the pixels and channels that are lit; see `DARKEST`.
+    """Standard error over mean at the 95th percentile of the pixels and channels that are lit; see `darkest`.
 
     Raises
     ------
     InputError
         The image is zero everywhere.
     """
-    floor = DARKEST * mean.mean()
-    if floor <= 0:
-        raise InputError("The reference is zero everywhere: no light reaches the fog that the camera sees.")
+    floor = darkest(mean)
+    if floor == 0:
+        raise InputError(
+            "The reference is zero everywhere: the camera sees no fog that light reaches, the fog scatters none "
+            "(albedo or sigma_t is 0), or it lets none through (sigma_t is too large for these distances)."
+        )
     lit = mean > 0
     return float(np.percentile(standard_error[lit] / np.maximum(mean[lit], floor), PERCENTILE))
 

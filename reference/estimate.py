@@ -93,6 +93,7 @@ def _recipe(scene: Scene, estimator: Estimator, goal: Goal) -> dict[str, Any]:
         "samples_per_pass": estimator.samples_per_pass,
         "variant": mi.variant(),
         "mitsuba": version("mitsuba"),
+        "drjit": version("drjit"),
         "goal": asdict(goal),
     }
 

@@ -14,7 +14,7 @@ class Goal:
     Attributes
     ----------
     rel_error : float      standard error relative to the pixel, at the 95th percentile of lit pixels
-    time_limit : float     [s]; checked after each pass
+    time_limit : float     [s]; checked after each pass from the eighth on
     """
 
     rel_error: float = 0.005

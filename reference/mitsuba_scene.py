@@ -39,7 +39,7 @@ def instantiate(scene: Scene) -> MitsubaScene:
         raise InputError(f"Mitsuba refuses {scene.path}: {sentence}.") from None
     parameters = mi.traverse(made)
     for mesh in scene.meshes:
-        if mesh.computed_normals and mesh.file and mesh.file.path.suffix == ".ply":
+        if mesh.computed_normals and mesh.file and mesh.file.path.suffix.lower() == ".ply":
             parameters[f"{mesh.name}.vertex_normals"] = mesh.normals.ravel()  # type: ignore[union-attr]
     parameters.update()
     sensor = made.sensors()[0]

@@ -97,7 +97,7 @@ class Mesh:
     vertices : (V, 3) float32        world space
     faces : (F, 3) uint32
     normals : (V, 3) float32 or None unit vertex normals; None where each face is flat
-    computed_normals : bool          the file had none: they are ours, and Mitsuba is handed the same
+    computed_normals : bool          the file had none: they are ours, and for a PLY Mitsuba is handed the same
     reflectance : (3,)               linear Rec.709
     two_sided : bool                 lit on both sides; otherwise black from behind
     file : MeshFile or None          where it came from; None for an analytic shape

@@ -50,9 +50,15 @@ def test_percentiles_over_a_hundred_and_one_numbers() -> None:
     assert [found.rel_50, found.rel_95, found.rel_99] == pytest.approx([0.5, 0.95, 0.99], abs=0.007)
 
 
-def test_pixels_darker_than_a_hundredth_of_the_mean_count_as_that_bright() -> None:
+def test_pixels_darker_than_a_hundredth_of_the_lit_median_count_as_that_bright() -> None:
     error = signed_relative_error(grey(0.5, 2.0), grey(0.0, 2.0))
-    np.testing.assert_allclose(error, grey(0.5 / 0.01, 0.0))
+    np.testing.assert_allclose(error, grey(0.5 / 0.02, 0.0))
+
+
+def test_one_pixel_that_looks_into_a_light_does_not_hide_the_errors_of_the_others() -> None:
+    reference, test = np.full((10, 10, 3), 0.05), np.full((10, 10, 3), 0.06)
+    reference[5, 5] = test[5, 5] = 1e4
+    assert measure(test, reference).rel_50 == pytest.approx(0.2)
 
 
 def test_brightness_scales_out_of_what_is_relative() -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from oracles import soft_spot_airlight, spot_airlight, whole_ray_airlight
-from scene_files import point, spot, write_scene
+from scene_files import COLLINEAR, point, spot, write_scene
 
 from scenes.loader import load
 
@@ -152,3 +152,11 @@ def test_rays_of_any_camera(size: tuple[int, int], eye: str, tmp_path, draw) -> 
     exact = whole_ray_airlight(scene)
     # measured 6.2e-6, where a ray passes the light at a hundredth of its distance
     assert worst(draw(scene, QUADRATURE, **QUICK).scattering, exact) < 2e-5
+
+
+@pytest.mark.parametrize("settings", COLLINEAR.values(), ids=COLLINEAR.keys())
+def test_rays_that_point_at_the_light_or_away_from_it(settings: dict, tmp_path, draw) -> None:
+    scene = write_scene(tmp_path, **settings)
+    exact = whole_ray_airlight(scene)
+    # measured 2.4e-5 with the light at the eye, where the near plane is a hundredth away and float32 places it to 2e-5
+    assert worst(draw(scene, QUADRATURE, **QUICK).scattering, exact) < 1e-4

@@ -281,3 +281,44 @@ def test_every_technique_draws(draw) -> None:
         assert frame.technique.name == name
         assert (frame.scattering > 0).all()
         assert (frame.composite == frame.surface + frame.scattering).all()
+
+
+def test_scale_and_clips_of_mitsubas_own_leave_no_z_fighting(tmp_path, draw) -> None:
+    floor = (
+        "<shape type='rectangle'><transform name='to_world'><scale value='{0}'/><rotate x='1' angle='-90'/>"
+        "<translate y='-{1}'/></transform></shape>"
+    )
+    depths = []
+    for scale in (1, 1000):
+        # a plate a thousandth above the floor, and near_clip at its default of 0.01 whatever the scale
+        shapes = floor.format(4 * scale, 1 * scale) + floor.format(scale, 0.999 * scale)
+        scene = write_scene(
+            tmp_path,
+            emitters=point(0.3 * scale, 2.6 * scale, 0),
+            shapes=shapes,
+            eye=f"0, 0, {5 * scale}",
+            far=1e4,
+            sigma_t="<float name='sigma_t' value='1e-5'/>",
+        )
+        depths.append(draw(scene, "lit_intervals+quadrature", steps=4, shadow_map=8).depth)
+    hit = depths[0] < 100
+    assert hit.sum() > 500
+    # rays begin on the near plane, which does not scale here
+    camera = scene.camera
+    before = 0.01 * camera.rays()[2] / (camera.far - camera.near)
+    # the wrong one of the two plates would be off by 2e-4
+    np.testing.assert_allclose(depths[1][hit], (1000 * (depths[0] + before) - before)[hit], rtol=2e-5)
+
+
+def test_normals_of_length_zero_are_black_as_in_mitsuba(tmp_path, draw) -> None:
+    header = "ply\nformat ascii 1.0\nelement vertex 3\n" + "".join(
+        f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz")
+    )
+    rows = "-1 -1 0 0 0 0\n1 -1 0 0 0 0\n0 1 0 0 0 0\n"
+    faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    (tmp_path / "zero.ply").write_text(header + faces + rows + "3 0 1 2\n")
+    scene = write_scene(tmp_path, shapes="<shape type='ply'><string name='filename' value='zero.ply'/></shape>")
+    frame = draw(scene, "lit_intervals+quadrature", steps=4, shadow_map=8)
+    assert (frame.depth < 20).any()
+    assert (frame.surface == 0).all()
+    assert np.isfinite(frame.scattering).all()

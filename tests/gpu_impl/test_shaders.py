@@ -10,7 +10,7 @@ import pytest
 from analytic.phase import PHASES
 from gpu_impl import shader_source
 from gpu_impl.context import shared_context
-from gpu_impl.device import GENERATED, Device
+from gpu_impl.device import Device
 from gpu_impl.shader_source import SHADERS, ShaderError, ShaderSource, compile_program
 from gpu_impl.techniques import AIRLIGHT_MODELS, VISIBILITIES
 
@@ -36,7 +36,7 @@ STUBS = {
 
 
 def assembled(main: str, **settings) -> ShaderSource:
-    generated = {"<main>": main, **GENERATED, **settings.pop("generated", {})}
+    generated = {"<main>": main, **AIRLIGHT_MODELS["quadrature"].generated, **settings.pop("generated", {})}
     includes = {"<phase>": "phase/isotropic.glsl"}
     return ShaderSource("<main>", settings.pop("defines", {"TILES": 6, "GREY": 0, "STEPS": 4}), includes, generated)
 
@@ -84,6 +84,7 @@ def test_every_combination_compiles(visibility: str, airlight: str, phase: str) 
                 "<visibility>": VISIBILITIES[visibility].source,
                 "<phase>": f"phase/{phase}.glsl",
             },
+            generated=AIRLIGHT_MODELS[airlight].generated,
         )
         # the driver asked the strategy, and the strategy the model
         assert "sigma_s" in program

@@ -356,7 +356,7 @@ def test_the_digest_goes_by_a_meshs_content_not_its_folder(mesh_folder: Path, mo
     scene.mkdir()
     path = written(scene, shape="<shape type='ply'><string name='filename' value='thing.ply'/></shape>")
     digests = []
-    for folder, mesh in (("one", "bare"), ("two", "bare"), ("three", "smooth")):
+    for folder, mesh in (("one", "bare"), ("a & <b>", "bare"), ('"three"', "smooth")):
         (mesh_folder / folder).mkdir()
         (mesh_folder / folder / "thing.ply").write_bytes((mesh_folder / f"{mesh}.ply").read_bytes())
         monkeypatch.setenv("AIRLIGHT_MESH_DIR", str(mesh_folder / folder))

@@ -21,6 +21,7 @@ def write_scene(
     phase: str = "<phase type='isotropic'/>",
     eye: str = "0, 0, 5",
     far: float = 25,
+    near: float = 0.01,
 ) -> Scene:
     """Load a scene of `emitters` and `shapes` in fog, seen from `eye` towards the origin."""
     path = folder / "scene.xml"
@@ -28,7 +29,7 @@ def write_scene(
         f"""<scene version='3.0.0'>
           <medium type='homogeneous' id='fog'>{sigma_t}<float name='albedo' value='0.9'/>{phase}</medium>
           <sensor type='perspective'>
-            <float name='fov' value='45'/><float name='far_clip' value='{far}'/>
+            <float name='fov' value='45'/><float name='far_clip' value='{far}'/><float name='near_clip' value='{near}'/>
             <transform name='to_world'><lookat origin='{eye}' target='0, 0, 0' up='0, 1, 0'/></transform>
             <film type='hdrfilm'/><ref id='fog'/>
           </sensor>
@@ -59,3 +60,21 @@ def sphere(x: float, y: float, z: float, radius: float) -> str:
         f"<shape type='sphere'><point name='center' x='{x}' y='{y}' z='{z}'/><float name='radius' value='{radius}'/>"
         "</shape>"
     )
+
+
+# rays that point at the light or away from it, where float32 has no digits left for the angle between two distances
+COLLINEAR = {
+    "at the eye": {"emitters": point(0, 0, 5)},
+    "at the eye, thin fog, Mitsuba's own clips": {
+        "emitters": point(0, 0, 5),
+        "sigma_t": "<float name='sigma_t' value='0.001'/>",
+        "far": 1e4,
+    },
+    "behind the eye": {"emitters": point(0, 1e-3, 9)},
+    "far off, and a short piece": {
+        "emitters": point(0, 3e4, 5),
+        "sigma_t": "<float name='sigma_t' value='1e-5'/>",
+        "near": 5,
+        "far": 5.5,
+    },
+}
