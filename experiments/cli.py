@@ -109,15 +109,15 @@ def render(
     from experiments.console import say
     from experiments.exr import check_writable
     from experiments.pictures import write_frame
-    from experiments.terminal import announce_stand_ins
+    from experiments.terminal import announce_scene
     from gpu_impl.renderer import Renderer
     from gpu_impl.techniques import find_technique
     from scenes.loader import load
 
     chosen = find_technique(technique, steps=steps, shadow_map=shadow_map, downsample=downsample)
-    check_writable(out)
+    check_writable(out, ".exr")
     loaded = load(scene, size=size, **_parameters(parameter))
-    announce_stand_ins(loaded)
+    announce_scene(loaded)
     with Renderer(loaded) as renderer:
         frame = renderer.render(chosen)
         milliseconds = renderer.milliseconds(chosen)
@@ -147,14 +147,14 @@ def reference(
     from experiments.console import say
     from experiments.exr import check_writable
     from experiments.pictures import write_reference
-    from experiments.terminal import TerminalWatcher, announce_accuracy, announce_stand_ins, announce_variant
+    from experiments.terminal import TerminalWatcher, announce_accuracy, announce_scene, announce_variant
     from scenes.loader import load
     from scenes.mitsuba_setup import mitsuba
 
     goal = Goal(rel_error, time_limit)
-    check_writable(out)
+    check_writable(out, ".exr")
     loaded = load(scene, size=size, **_parameters(parameter))
-    announce_stand_ins(loaded)
+    announce_scene(loaded)
     announce_variant()
     if check and mitsuba().variant() == "scalar_rgb":
         raise InputError("--check compares with volpath, and in scalar_rgb the reference is volpath; leave it out.")

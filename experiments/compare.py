@@ -22,10 +22,7 @@ def compare_files(picture: Path, truth: Path, layer: str, heatmap: Path | None =
         A file or a layer is missing, the sizes differ, or the heat map cannot be written.
     """
     if heatmap:
-        # one of the two pictures is easily named by mistake
-        if heatmap.suffix.lower() != ".png":
-            raise InputError(f"The heat map {heatmap} will be a PNG; give it a name that ends in .png.")
-        check_writable(heatmap)
+        check_writable(heatmap, ".png")
     tested, _ = read_exr(picture)
     reference, metadata = read_exr(truth)
     test_image, reference_image = _layer(picture, tested, layer), _layer(truth, reference, layer)

@@ -47,8 +47,8 @@ def write_exr(path: Path, layers: Mapping[str, np.ndarray], metadata: Mapping[st
             raise OSError(str(error)) from None
 
 
-def check_writable(path: Path) -> None:
-    """Raise InputError where `path` could not be written: better before the work than after it."""
+def check_writable(path: Path, ending: str = "") -> None:
+    """Raise InputError where `path` could not be written, or lacks its ending: better before the work than after it."""
     folder = path.absolute().parent
     try:
         mode = path.stat().st_mode
@@ -65,6 +65,9 @@ def check_writable(path: Path) -> None:
         raise InputError(f"The folder {folder} does not exist; make it first.")
     if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
         raise InputError(f"{path} cannot be written; choose another place.")
+    # one of a command's input pictures is easily named by mistake
+    if not path.name.lower().endswith(ending):
+        raise InputError(f"{path} will be written as {ending[1:].upper()}; give it a name that ends in {ending}.")
 
 
 def read_exr(path: Path) -> tuple[Layers, dict[str, str]]:

@@ -62,8 +62,8 @@ class TerminalWatcher(Watcher):
         self._progress.update(self._cases, description=name, completed=number, note=left)
 
     def scene(self, scene: Scene) -> None:
-        """Say which meshes are stand-ins."""
-        announce_stand_ins(scene)
+        """Say what is not as the file has it."""
+        announce_scene(scene)
 
     def reference(self, progress: Convergence) -> None:
         """Move the bar of the reference: passes done of those that the present error asks for."""
@@ -78,8 +78,10 @@ class TerminalWatcher(Watcher):
         announce_accuracy(reference)
 
 
-def announce_stand_ins(scene: Scene) -> None:
-    """Say which meshes are not the real ones, and the cure."""
+def announce_scene(scene: Scene) -> None:
+    """Say which meshes are not the real ones, and what of the file is replaced."""
+    if scene.replaced:
+        warn(f"{scene.name}: single scattering is computed, not what its integrator '{scene.replaced[0]}' would be.")
     if scene.stand_ins:
         warn(
             f"{scene.name}: a procedural stand-in serves for {', '.join(scene.stand_ins)}; "

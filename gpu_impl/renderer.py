@@ -11,7 +11,7 @@ from gpu_impl.device import Device
 from gpu_impl.frame import Frame
 from gpu_impl.geometry import Geometry, render_gbuffer
 from gpu_impl.scattering import add_scattering
-from gpu_impl.shadow_map import render_shadow_map
+from gpu_impl.shadow_map import check_map_size, render_shadow_map
 from gpu_impl.surface import add_surface
 from gpu_impl.techniques import Technique
 from gpu_impl.upsample import upsample
@@ -54,10 +54,14 @@ class Renderer:
         """
         technique.check()
         technique.check_phase(self.scene.phase)
+        for light in self.scene.lights:
+            check_map_size(self.device, light, technique.shadow_map)
         textures = self._draw(technique)
         surface, scattering, gbuffer = (_read(texture) for texture in textures)
         for texture in textures:
             texture.release()
+        if not (np.isfinite(surface).all() and np.isfinite(scattering).all()):
+            raise InputError(f"{technique.name} draws {self.scene.path} with pixels that are not finite.")
         far = self.scene.camera.rays()[2]
         return Frame(
             surface=surface[..., :3],

@@ -62,11 +62,16 @@ class ShadowMap:
         }
 
 
-def render_shadow_map(device: Device, geometry: Geometry, light: Light, size: int) -> ShadowMap:
-    """Draw the scene from the light; the caller releases the texture."""
-    context, tiles, widest = device.context, tile_count(light), device.largest_texture
+def check_map_size(device: Device, light: Light, size: int) -> None:
+    """Raise InputError where the light's map would be larger than a texture may be."""
+    tiles, widest = tile_count(light), device.largest_texture
     if tiles * size > widest:
         raise InputError(f"A shadow map of {tiles} x {size} texels is wider than this OpenGL allows ({widest}).")
+
+
+def render_shadow_map(device: Device, geometry: Geometry, light: Light, size: int) -> ShadowMap:
+    """Draw the scene from the light; the caller releases the texture."""
+    context, tiles = device.context, tile_count(light)
     # a hair wider than the cone, so that its edge falls inside the map
     tan_half = 1.0 if tiles > 1 else np.tan(light.cutoff_angle) * 1.01
     if tiles == 1:

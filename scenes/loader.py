@@ -55,18 +55,17 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
             raise InputError(f"{path} cannot be given a parameter called {name}; rename it in the scene.")
     state = _parse(path, texts)
     root = Node(state, 0)
-    # they say how Mitsuba would estimate the picture; both are replaced
-    root.children("Integrator")
+    replaced = [node.plugin for node in root.children("Integrator") if node.plugin != "volpath"]
     camera, medium_node = _camera(_only(root.children("Sensor"), "sensor", path), size)
     medium, phase = _medium(medium_node)
-    lights = tuple(_light(node) for node in root.children("Emitter"))
+    lights = tuple(_light(node, medium_node) for node in root.children("Emitter"))
     if not lights:
         raise InputError(f"{path} has no light: add a <emitter type='point'> or a <emitter type='spot'>.")
     meshes = _meshes(root, path)
     # definitions that others refer to; who uses them has read them
     root.children("Medium", "BSDF", "PhaseFunction")
     root.finish()
-    return Scene(path.stem, path, texts, camera, meshes, lights, medium, phase, state, _digest(state))
+    return Scene(path.stem, path, texts, camera, meshes, lights, medium, phase, tuple(replaced), state, _digest(state))
 
 
 def _parse(path: Path, parameters: dict[str, str]) -> Any:
@@ -197,7 +196,7 @@ def _phase(node: Node | None) -> Phase:
         raise node.refuse(f"cannot be used: {error}.") from None
 
 
-def _light(node: Node) -> Light:
+def _light(node: Node, fog: Node) -> Light:
     if node.plugin not in ("point", "spot"):
         raise node.refuse("is not supported; use point or spot.")
     if node.plugin == "point" and {"position", "to_world"} <= set(node.unread):
@@ -218,6 +217,9 @@ def _light(node: Node) -> Light:
     intensity = node.color("intensity", 1.0)
     if not intensity.any():
         raise node.refuse("has no intensity, so nothing would be seen.")
+    for medium in node.children("Medium"):
+        if medium.index != fog.index:
+            raise medium.refuse(f"around the {node.plugin} light is not the one that fills space.")
     node.finish()
     axis = to_world[:3, 2] / np.linalg.norm(to_world[:3, 2])
     return Light(node.plugin, position, intensity, axis, float(beam_width), float(cutoff_angle))  # type: ignore[arg-type]

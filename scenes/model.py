@@ -123,6 +123,7 @@ class Scene:
     path : Path                    the XML file
     parameters : dict              the `$` parameters that were given
     phase : Phase          of the medium that fills space
+    replaced : tuple of str        integrators of the file that are not single scattering, and are not used
     parsed : ParserState           Mitsuba's own parse of the same file, size and mesh paths filled in; the reference
                                    is instantiated from it, so that a mistake of the loader shows as a difference
     digest : str                   hash of everything that decides the picture: the file, its parameters, its meshes
@@ -136,6 +137,7 @@ class Scene:
     lights: tuple[Light, ...]
     medium: Medium
     phase: Phase
+    replaced: tuple[str, ...]
     parsed: Any
     digest: str
 

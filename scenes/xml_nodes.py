@@ -28,6 +28,7 @@ class Node:
 
     def __init__(self, state: Any, index: int) -> None:
         self.state = state
+        self.index = index
         self.props = state.nodes[index].props
         self.plugin: str = self.props.plugin_name()
         self.kind: str = str(state.nodes[index].type).rsplit(".", 1)[-1]
