@@ -48,7 +48,7 @@ AIRLIGHT_MODELS = {
 }
 
 VISIBILITIES = {
-    "uniform_march": Visibility("visibility/uniform_march.glsl", "equal steps over the whole ray"),
+    "uniform_march": Visibility("visibility/uniform_march.glsl", "equal steps over the ray"),
     "lit_intervals": Visibility("visibility/lit_intervals.glsl", "samples merged to lit intervals (Algorithm 4.1)"),
 }
 

@@ -1,4 +1,5 @@
-// A march of STEPS equal steps over the whole ray, one piece for each step whose midpoint is lit (Nishita 1987).
+// A march of STEPS equal steps over the ray, one piece for each step whose midpoint is lit (Nishita 1987). The ray ends at
+// the surface or, sooner, where the driver's fog leaves float32 nothing to add (scattering.frag.glsl).
 #include "contract.glsl"
 #include "shadow_lookup.glsl"
 
