@@ -79,7 +79,8 @@ class Sheet:
         self._heading.set_text(f"{title}\n{below}")
         self._note.set_text(note)
         with replacing(path) as beside:
-            self._figure.savefig(beside, format="png")
+            # the fastest compression: drawing takes long enough
+            self._figure.savefig(beside, format="png", pil_kwargs={"compress_level": 1})
 
 
 def summary(row: Mapping[str, Any]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 from gpu_impl.context import gl_info, shared_context
@@ -14,11 +15,11 @@ class Device:
 
     Parameters
     ----------
-    context : moderngl.Context; the process's own by default
+    context : moderngl.Context
     """
 
-    def __init__(self, context: Any | None = None) -> None:
-        self.context = context or shared_context()
+    def __init__(self, context: Any) -> None:
+        self.context = context
         self.info = gl_info(self.context)
         self.largest_texture: int = self.context.info["GL_MAX_TEXTURE_SIZE"]
         self._programs: dict[tuple, Any] = {}
@@ -72,3 +73,9 @@ class Device:
         for program in self._programs.values():
             program.release()
         self._programs.clear()
+
+
+@cache
+def shared_device() -> Device:
+    """Return the process's own device: what it compiled for one scene serves the next."""
+    return Device(shared_context())

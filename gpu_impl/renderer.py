@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gpu_impl.device import Device
+from gpu_impl.device import Device, shared_device
 from gpu_impl.frame import Frame
 from gpu_impl.geometry import Geometry, render_gbuffer
 from gpu_impl.scattering import add_scattering
@@ -25,9 +25,9 @@ class Renderer:
     Use it as a context manager, or call `release`.
     """
 
-    def __init__(self, scene: Scene, context: Any | None = None) -> None:
+    def __init__(self, scene: Scene, device: Device | None = None) -> None:
         self.scene = scene
-        self.device = Device(context)
+        self.device = device or shared_device()
         if max(scene.camera.width, scene.camera.height) > self.device.largest_texture:
             limit = self.device.largest_texture
             raise InputError(f"The image is larger than this OpenGL allows ({limit} pixels on a side).")
@@ -42,7 +42,6 @@ class Renderer:
     def release(self) -> None:
         """Give back what the scene holds on the GPU."""
         self._geometry.release()
-        self.device.release()
 
     def render(self, technique: Technique) -> Frame:
         """Draw a frame.

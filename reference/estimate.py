@@ -11,7 +11,7 @@ import numpy as np
 
 from reference import cache
 from reference.convergence import Estimate, Progress, converge
-from reference.estimators import Estimator, default_estimator
+from reference.estimators import Equiangular, FilmVolpath, default_estimator
 from reference.goal import Goal
 from reference.integrator import mi
 from scenes.model import Scene
@@ -72,19 +72,20 @@ def estimate_reference(
     InputError
         The estimate is zero everywhere or not finite, or the cache cannot be written.
     """
-    estimator = default_estimator(scene)
+    # the class says all that a cached reference has to agree with; Mitsuba's scene is made only for a new one
+    estimator = default_estimator()
     recipe = _recipe(scene, estimator, goal)
     if use_cache and (entry := cache.load(recipe)):
         return Reference(_unpack(*entry), recipe, estimator.pixel_filter, from_cache=True)
     if use_cache:
         cache.check_writable()
-    estimate = converge(estimator, goal, report)
+    estimate = converge(estimator(scene), goal, report)
     if use_cache:
         cache.store(recipe, *_pack(estimate))
     return Reference(estimate, recipe, estimator.pixel_filter, from_cache=False)
 
 
-def _recipe(scene: Scene, estimator: Estimator, goal: Goal) -> dict[str, Any]:
+def _recipe(scene: Scene, estimator: type[Equiangular] | type[FilmVolpath], goal: Goal) -> dict[str, Any]:
     return {
         "scene": scene.digest,
         "size": [scene.camera.width, scene.camera.height],

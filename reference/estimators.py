@@ -49,12 +49,13 @@ class Estimator(Protocol):
 class PixelCentres:
     """Rays through pixel centres, in wavefronts of bounded size."""
 
-    def __init__(self, scene: Scene, sampler: str, samples_per_pass: int) -> None:
+    samples_per_pass = 16
+
+    def __init__(self, scene: Scene, sampler: str) -> None:
         self.mitsuba = instantiate(scene)
         self.shape = (scene.camera.height, scene.camera.width)
-        self.samples_per_pass = samples_per_pass
-        self.sampler = mi.load_dict({"type": sampler, "sample_count": samples_per_pass})
-        self.sampler.set_samples_per_wavefront(samples_per_pass)
+        self.sampler = mi.load_dict({"type": sampler, "sample_count": self.samples_per_pass})
+        self.sampler.set_samples_per_wavefront(self.samples_per_pass)
 
     def rays(self, pixel: Any) -> Any:
         """Mitsuba's own rays through the centres of pixels given by their index in row order."""
@@ -89,7 +90,7 @@ class Equiangular(PixelCentres):
 
     def __init__(self, scene: Scene, light_share: float = 1.0) -> None:
         # strata lie within a pass, which speaks for few large ones; an honest error bar asks for many
-        super().__init__(scene, "stratified", samples_per_pass=16)
+        super().__init__(scene, "stratified")
         self.integrator = mi.load_dict({"type": "single_scattering"})
         self.integrator.light_share = light_share
 
@@ -120,7 +121,7 @@ class Volpath(PixelCentres):
     layers: tuple[str, ...] = ("composite",)
 
     def __init__(self, scene: Scene) -> None:
-        super().__init__(scene, "independent", samples_per_pass=16)
+        super().__init__(scene, "independent")
         self.integrator = mi.load_dict({"type": "volpath", "max_depth": 2})
 
     def fixed(self) -> dict[str, Image]:
@@ -148,11 +149,11 @@ class FilmVolpath:
     version = 2
     pixel_filter = "box"
     layers: tuple[str, ...] = ("scattering", "surface")
+    samples_per_pass = 8
     # how the parameters end that are zero for a layer
     _BLACK: ClassVar[dict[str, str]] = {"scattering": ".reflectance.value", "surface": ".albedo.value.value"}
 
     def __init__(self, scene: Scene) -> None:
-        self.samples_per_pass = 8
         self._scene = instantiate(scene).scene
         self._sensor = _box_sensor(scene, self._scene)
         self._integrator = mi.load_dict({"type": "volpath", "max_depth": 2})
@@ -177,9 +178,9 @@ class FilmVolpath:
         return images
 
 
-def default_estimator(scene: Scene) -> Estimator:
+def default_estimator() -> type[Equiangular] | type[FilmVolpath]:
     """Choose the best estimator for the variant that works on this machine."""
-    return FilmVolpath(scene) if mi.variant() == "scalar_rgb" else Equiangular(scene)
+    return FilmVolpath if mi.variant() == "scalar_rgb" else Equiangular
 
 
 @contextmanager

@@ -173,7 +173,7 @@ def test_shadow_map_finds_the_nearest_surface_in_every_direction(light: str, til
     # of different sizes, so that no face can stand in for another
     radii = 0.35 + 0.01 * np.arange(len(centres))
     scene = write_scene(tmp_path, light, "".join(sphere(*c, r) for c, r in zip(centres, radii, strict=True)))
-    device, lamp = Device(), scene.lights[0]
+    device, lamp = Device(shared_context()), scene.lights[0]
     assert tile_count(lamp) == tiles
     geometry = Geometry(device, scene)
     shadow_map = render_shadow_map(device, geometry, lamp, 512)

@@ -74,7 +74,7 @@ def test_every_file_is_covered() -> None:
 @pytest.mark.parametrize("airlight", AIRLIGHT_MODELS)
 @pytest.mark.parametrize("phase", PHASES)
 def test_every_combination_compiles(visibility: str, airlight: str, phase: str) -> None:
-    device = Device()
+    device = Device(shared_context())
     for tiles, grey in itertools.product((1, 6), (0, 1)):
         program = device.program(
             "scattering.frag.glsl",
