@@ -86,9 +86,9 @@ def run_suite(name: str, suite: Suite, parent: Path, watcher: Watcher) -> tuple[
                     case = keep_case(folder, scene, frame, reference)
                     sheets.append(drawer.submit(write_sheet, *_sheet(folder, scene, frame, reference, case)))
                     rows += case
-                    # each finished case is on disk before the next begins
-                    write_tables(folder, rows)
                     number += 1
+            # each finished scene is in the tables before the next begins; a case's EXR is there at once
+            write_tables(folder, rows)
         for sheet in sheets:
             sheet.result()
     watcher.case("done", total, total)

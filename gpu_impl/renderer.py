@@ -3,20 +3,35 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gpu_impl.device import Device, shared_device
 from gpu_impl.frame import Frame
-from gpu_impl.geometry import Geometry, render_gbuffer
+from gpu_impl.geometry import GBuffer, Geometry, render_gbuffer
 from gpu_impl.scattering import add_scattering
-from gpu_impl.shadow_map import check_map_size, render_shadow_map
+from gpu_impl.shadow_map import ShadowMap, check_map_size, render_shadow_map
 from gpu_impl.surface import add_surface
 from gpu_impl.techniques import Technique
 from gpu_impl.upsample import upsample
 from scenes.errors import InputError
 from scenes.model import Scene
+
+
+@dataclass(frozen=True)
+class View:
+    """What the eye and the lights see, before any technique: the same for all that share a shadow-map size."""
+
+    gbuffer: GBuffer
+    surface: Any
+    shadow_maps: tuple[ShadowMap, ...]
+
+    def release(self) -> None:
+        """Give the textures back."""
+        for texture in (*self.gbuffer.textures, self.surface, *(found.texture for found in self.shadow_maps)):
+            texture.release()
 
 
 class Renderer:
@@ -32,6 +47,7 @@ class Renderer:
             limit = self.device.largest_texture
             raise InputError(f"The image is larger than this OpenGL allows ({limit} pixels on a side).")
         self._geometry = Geometry(self.device, scene)
+        self._views: dict[int, View] = {}
 
     def __enter__(self) -> Renderer:
         return self
@@ -42,9 +58,12 @@ class Renderer:
     def release(self) -> None:
         """Give back what the scene holds on the GPU."""
         self._geometry.release()
+        for view in self._views.values():
+            view.release()
+        self._views.clear()
 
     def render(self, technique: Technique) -> Frame:
-        """Draw a frame.
+        """Draw a frame; its view is kept for other techniques.
 
         Raises
         ------
@@ -55,10 +74,12 @@ class Renderer:
         technique.check_phase(self.scene.phase)
         for light in self.scene.lights:
             check_map_size(self.device, light, technique.shadow_map)
-        textures = self._draw(technique)
-        surface, scattering, gbuffer = (_read(texture) for texture in textures)
-        for texture in textures:
-            texture.release()
+        if technique.shadow_map not in self._views:
+            self._views[technique.shadow_map] = self._see(technique.shadow_map)
+        view = self._views[technique.shadow_map]
+        texture = self._scatter(technique, view)
+        surface, scattering, gbuffer = (_read(t) for t in (view.surface, texture, view.gbuffer.normal_and_distance))
+        texture.release()
         if not (np.isfinite(surface).all() and np.isfinite(scattering).all()):
             raise InputError(f"{technique.name} draws {self.scene.path} with pixels that are not finite.")
         far = self.scene.camera.rays()[2]
@@ -77,32 +98,34 @@ class Renderer:
         for _ in range(frames):
             self.device.context.finish()
             begin = time.perf_counter()
-            textures = self._draw(technique)
+            # camera and lights may have moved: nothing is kept from the frame before
+            view = self._see(technique.shadow_map)
+            texture = self._scatter(technique, view)
             self.device.context.finish()
             times.append(1e3 * (time.perf_counter() - begin))
-            for texture in textures:
-                texture.release()
+            texture.release()
+            view.release()
         return float(np.median(times))
 
-    def _draw(self, technique: Technique) -> tuple[Any, Any, Any]:
-        """Run all passes; returns the textures of surface, scattering and G-buffer, to be given back by the caller."""
-        device, scene, step = self.device, self.scene, technique.downsample
-        camera = scene.camera
-        gbuffer = render_gbuffer(device, self._geometry, camera)
-        surface = device.texture((camera.width, camera.height), 4)
-        scattering = device.texture((-(-camera.width // step), -(-camera.height // step)), 4)
-        for texture in (surface, scattering):
-            device.clear(texture)
-        for light in scene.lights:
-            shadow_map = render_shadow_map(device, self._geometry, light, technique.shadow_map)
+    def _see(self, shadow_map_size: int) -> View:
+        """Run the passes that no technique changes; the caller releases the view."""
+        device, scene = self.device, self.scene
+        gbuffer = render_gbuffer(device, self._geometry, scene.camera)
+        surface = device.texture((scene.camera.width, scene.camera.height), 4)
+        device.clear(surface)
+        shadow_maps = tuple(render_shadow_map(device, self._geometry, light, shadow_map_size) for light in scene.lights)
+        for light, shadow_map in zip(scene.lights, shadow_maps, strict=True):
             add_surface(device, surface, scene, light, gbuffer, shadow_map)
-            add_scattering(device, scattering, technique, scene, light, gbuffer, shadow_map)
-            shadow_map.texture.release()
-        if step > 1:
-            scattering = upsample(device, scattering, camera, gbuffer, step)
-        gbuffer.material.release()
-        gbuffer.triangle_normal.release()
-        return surface, scattering, gbuffer.normal_and_distance
+        return View(gbuffer, surface, shadow_maps)
+
+    def _scatter(self, technique: Technique, view: View) -> Any:
+        """Run the technique's own passes; the caller releases the texture."""
+        device, scene, step = self.device, self.scene, technique.downsample
+        texture = device.texture((-(-scene.camera.width // step), -(-scene.camera.height // step)), 4)
+        device.clear(texture)
+        for light, shadow_map in zip(scene.lights, view.shadow_maps, strict=True):
+            add_scattering(device, texture, technique, scene, light, view.gbuffer, shadow_map)
+        return upsample(device, texture, scene.camera, view.gbuffer, step) if step > 1 else texture
 
 
 def _read(texture: Any) -> np.ndarray:
