@@ -58,9 +58,7 @@ class Reference:
         return self.estimate.standard_error[layer]
 
 
-def estimate_reference(
-    scene: Scene, goal: Goal, report: Callable[[Progress], None] | None = None, use_cache: bool = True
-) -> Reference:
+def estimate_reference(scene: Scene, goal: Goal, report: Callable[[Progress], None] | None = None) -> Reference:
     """Take the scene's reference from the cache, or estimate it and keep it there.
 
     Parameters
@@ -75,13 +73,11 @@ def estimate_reference(
     # the class says all that a cached reference has to agree with; Mitsuba's scene is made only for a new one
     estimator = default_estimator()
     recipe = _recipe(scene, estimator, goal)
-    if use_cache and (entry := cache.load(recipe)):
+    if entry := cache.load(recipe):
         return Reference(_unpack(*entry), recipe, estimator.pixel_filter, from_cache=True)
-    if use_cache:
-        cache.check_writable()
+    cache.check_writable()
     estimate = converge(estimator(scene), goal, report)
-    if use_cache:
-        cache.store(recipe, *_pack(estimate))
+    cache.store(recipe, *_pack(estimate))
     return Reference(estimate, recipe, estimator.pixel_filter, from_cache=False)
 
 
