@@ -173,5 +173,4 @@ def test_whatever_decides_a_reference_makes_another_one() -> None:
         (scene, Goal(0.1)),
     ]:
         assert not estimate_reference(other, goal).from_cache
-    assert not estimate_reference(scene, Goal(0.2), use_cache=False).from_cache
     assert estimate_reference(load("empty", size=(6, 5)), Goal(0.2)).from_cache
