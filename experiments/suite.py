@@ -67,9 +67,11 @@ class Suite(_Strict):
     @field_validator("techniques")
     @classmethod
     def _cases_differ(cls, techniques: list[TechniqueChoice]) -> list[TechniqueChoice]:
-        for choice in techniques:
-            if techniques.count(choice) > 1:
-                raise ValueError(f"{choice.name} stands there twice with the same settings")
+        # as they will run: a setting that is spelt out may be the technique's own
+        resolved = [choice.technique() for choice in techniques]
+        for technique in resolved:
+            if resolved.count(technique) > 1:
+                raise ValueError(f"{technique.name} stands there twice with the same settings")
         return techniques
 
     @field_validator("parameters")

@@ -33,8 +33,8 @@ class Device:
         generated: Mapping[str, str] | None = None,
     ) -> Any:
         """Return the program of two shader files below `shaders/`; see `ShaderSource` for the rest."""
-        defines, includes = defines or {}, includes or {}
-        key = (vertex, fragment, *sorted(defines.items()), *sorted(includes.items()))
+        defines, includes, generated = defines or {}, includes or {}, generated or {}
+        key = (vertex, fragment, *(item for texts in (defines, includes, generated) for item in sorted(texts.items())))
         if key not in self._programs:
             self._programs[key] = compile_program(
                 self.context,

@@ -44,7 +44,7 @@ def load(recipe: Recipe) -> tuple[Arrays, Recipe] | None:
         if record["recipe"] != recipe:
             raise ValueError("the recipe is another one")
     except Exception:
-        # what zipfile, numpy and json raise on damaged bytes is of many types (NotImplementedError, struct.error, ...)
+        # what zipfile, numpy and json raise on damaged bytes is of many types, struct.error among them
         with contextlib.suppress(OSError):  # a folder that only others may write keeps it
             path.replace(path.with_suffix(".damaged"))
         return None

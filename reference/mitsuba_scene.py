@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scenes.errors import InputError
-from scenes.mitsuba_setup import mitsuba
+from scenes.mitsuba_setup import mitsuba, parser_config
 from scenes.model import Scene
 
 
@@ -28,11 +28,8 @@ def instantiate(scene: Scene) -> MitsubaScene:
     mi = mitsuba()
     import mitsuba.parser as parser
 
-    config = parser.ParserConfig(mi.variant())
-    config.merge_meshes = False
-    config.merge_equivalent = False
     try:
-        made: Any = parser.instantiate(config, scene.parsed)
+        made: Any = parser.instantiate(parser_config(), scene.parsed)
     except (RuntimeError, ValueError) as error:
         # what airlight replaces (integrator, sampler, filter) or does not use still has to exist
         sentence = " ".join(str(error).split()).rstrip(".")

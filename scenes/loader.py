@@ -19,7 +19,7 @@ from analytic.phase import Phase
 from scenes.catalogue import scene_path
 from scenes.errors import InputError
 from scenes.mesh_files import sha256
-from scenes.mitsuba_setup import mitsuba
+from scenes.mitsuba_setup import parser_config
 from scenes.model import Camera, Light, Mesh, Scene
 from scenes.shapes import FROM_FILE, load_shape
 from scenes.xml_nodes import Node, is_similarity
@@ -69,13 +69,9 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
 
 
 def _parse(path: Path, parameters: dict[str, str]) -> Any:
-    mi = mitsuba()
+    config = parser_config()
     import mitsuba.parser as parser
 
-    config = parser.ParserConfig(mi.variant())
-    # one mesh for each shape of the file, so that both renderers can name it
-    config.merge_meshes = False
-    config.merge_equivalent = False
     try:
         state = parser.parse_file(config, str(path), **parameters)
         parser.transform_all(config, state)

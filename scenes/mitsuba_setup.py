@@ -47,6 +47,17 @@ def mitsuba() -> Any:
     raise InputError(f"The Mitsuba variant {asked} does not work here; `airlight doctor` says why.")
 
 
+def parser_config() -> Any:
+    """How scene files are parsed and instantiated: one object for each shape, so that both renderers can name it."""
+    mi = mitsuba()
+    import mitsuba.parser as parser
+
+    config = parser.ParserConfig(mi.variant())
+    config.merge_meshes = False
+    config.merge_equivalent = False
+    return config
+
+
 def variant_works(mi: Any, variant: str, llvm: LlvmChoice) -> bool:
     """Tell whether Mitsuba's `variant` can be used on this machine (without leaving it set)."""
     if variant == "llvm_ad_rgb" and llvm.usable is None:
