@@ -35,3 +35,14 @@ class Frame:
     def composite(self) -> np.ndarray:
         """Surface and scattering together, (H, W, 3)."""
         return self.surface + self.scattering
+
+    @property
+    def layers(self) -> dict[str, np.ndarray]:
+        """Every array by the name that its layer has in an EXR file."""
+        names = ("composite", "scattering", "surface", "depth", "lit_intervals")
+        return {name: getattr(self, name) for name in names}
+
+    def __repr__(self) -> str:
+        """One line, for notebooks."""
+        height, width = self.depth.shape
+        return f"<Frame {self.technique.name}, {width} x {height}, drawn on {self.gl.renderer}>"

@@ -11,7 +11,11 @@ import numpy as np
 from gpu_impl.device import Device
 from gpu_impl.matrices import projection_matrix
 from gpu_impl.shader_source import set_uniforms
-from scenes.model import Camera, Mesh, Scene
+from gpu_impl.textures import PictureTextures
+from scenes.model import Camera, Mesh, Scene, Texture
+
+# how geometry.frag.glsl numbers `Mesh.mapping`
+MAPPINGS = ("uv", "sphere", "cylinder", "disk")
 
 
 class MeshBuffers:
@@ -31,13 +35,20 @@ class MeshBuffers:
         self._positions = context.buffer(np.ascontiguousarray(vertices, np.float32))
         self._normals = context.buffer(np.ascontiguousarray(normals, np.float32))
         self._indices = context.buffer(np.ascontiguousarray(faces, np.uint32))
-        self.material = (*mesh.reflectance.tolist(), float(mesh.two_sided))
+        self.material = mesh.material
+        self._coordinates = None
+        if mesh.coordinates is not None and isinstance(mesh.material.diffuse, Texture):
+            coordinates = mesh.coordinates if mesh.normals is not None else mesh.coordinates[mesh.faces].reshape(-1, 3)
+            self._coordinates = context.buffer(np.ascontiguousarray(coordinates, np.float32))
+        self._mapping = MAPPINGS.index(mesh.mapping)
 
     def draw(self, program: Any, uniforms: Mapping[str, Any]) -> None:
         """Draw with the attributes that the program has."""
         attributes = [(self._positions, "3f", "in_position")]
         if "in_normal" in program:
             attributes.append((self._normals, "3f", "in_normal"))
+        if "in_coordinates" in program and self._coordinates:
+            attributes.append((self._coordinates, "3f", "in_coordinates"))
         set_uniforms(program, uniforms)
         array = self._context.vertex_array(program, attributes, self._indices)
         array.render()
@@ -45,15 +56,43 @@ class MeshBuffers:
 
     def release(self) -> None:
         """Give the buffers back."""
-        for buffer in (self._positions, self._normals, self._indices):
-            buffer.release()
+        for buffer in (self._positions, self._normals, self._indices, self._coordinates):
+            if buffer:
+                buffer.release()
+
+    def material_uniforms(self, pictures: PictureTextures) -> dict[str, Any]:
+        """Uniforms of geometry.frag.glsl; the picture, if the material has one, is bound."""
+        material, picture = self.material, self.material.diffuse
+        plain = (0.0, 0.0, 0.0) if isinstance(picture, Texture) else tuple(picture.tolist())
+        uniforms: dict[str, Any] = {
+            "diffuse": (*plain, float(material.two_sided)),
+            "specular": (*material.specular.tolist(), material.exponent),
+            "has_picture": isinstance(picture, Texture),
+            "mapping": self._mapping,
+        }
+        if isinstance(picture, Texture):
+            uniforms |= pictures.bind(picture, 0, "picture", "picture_bitmap")
+        return uniforms
+
+
+def bounding_box(scene: Scene) -> np.ndarray:
+    """Corners of the box around all that can cast a shadow, (8, 3); of an empty one at the origin without meshes."""
+    extremes = [f(mesh.vertices, axis=0) for mesh in scene.meshes for f in (np.min, np.max)] or [np.zeros(3)]
+    low, high = np.min(extremes, axis=0), np.max(extremes, axis=0)
+    return np.array([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)], np.float64)
 
 
 class Geometry:
-    """All meshes of a scene on the GPU."""
+    """All meshes of a scene on the GPU.
+
+    Attributes
+    ----------
+    bounds : (8, 3)    see `bounding_box`
+    """
 
     def __init__(self, device: Device, scene: Scene) -> None:
         self.meshes = [MeshBuffers(device.context, mesh) for mesh in scene.meshes]
+        self.bounds = bounding_box(scene)
 
     def release(self) -> None:
         """Give all buffers back."""
@@ -69,29 +108,32 @@ class GBuffer:
     ----------
     normal_and_distance : texture RGBA32F   unit normal (0 for none), distance along the pixel's ray [scene unit],
                                         0 where there is no surface
-    material : texture RGBA32F              reflectance, 1 if two-sided
+    diffuse : texture RGBA32F               diffuse reflectance, 1 if two-sided
+    specular : texture RGBA32F              specular reflectance, exponent
     triangle_normal : texture RGBA32F       normal of the triangle itself, of any length
     """
 
     normal_and_distance: Any
-    material: Any
+    diffuse: Any
+    specular: Any
     triangle_normal: Any
 
     def bind(self, first_unit: int) -> dict[str, int]:
         """Bind the textures and give their uniforms."""
         units = {
             "normal_and_distance": first_unit,
-            "surface_material": first_unit + 1,
-            "triangle_normal": first_unit + 2,
+            "surface_diffuse": first_unit + 1,
+            "surface_specular": first_unit + 2,
+            "triangle_normal": first_unit + 3,
         }
         for unit, texture in zip(units.values(), self.textures, strict=True):
             texture.use(unit)
         return units
 
     @property
-    def textures(self) -> tuple[Any, Any, Any]:
+    def textures(self) -> tuple[Any, Any, Any, Any]:
         """All of them, in the order of the pass's outputs."""
-        return self.normal_and_distance, self.material, self.triangle_normal
+        return self.normal_and_distance, self.diffuse, self.specular, self.triangle_normal
 
 
 def camera_uniforms(camera: Camera) -> dict[str, Any]:
@@ -104,10 +146,10 @@ def camera_uniforms(camera: Camera) -> dict[str, Any]:
     }
 
 
-def render_gbuffer(device: Device, geometry: Geometry, camera: Camera) -> GBuffer:
+def render_gbuffer(device: Device, geometry: Geometry, camera: Camera, pictures: PictureTextures) -> GBuffer:
     """Rasterise the scene from the eye; the caller releases the textures."""
     context, size = device.context, (camera.width, camera.height)
-    buffers = GBuffer(*(device.texture(size, 4) for _ in range(3)))
+    buffers = GBuffer(*(device.texture(size, 4) for _ in range(4)))
     depth = context.depth_renderbuffer(size)
     target = context.framebuffer(buffers.textures, depth)
     target.use()
@@ -116,7 +158,7 @@ def render_gbuffer(device: Device, geometry: Geometry, camera: Camera) -> GBuffe
     program = device.program("geometry.frag.glsl", vertex="geometry.vert.glsl")
     uniforms = camera_uniforms(camera) | {"world_to_clip": _world_to_clip(camera)}
     for mesh in geometry.meshes:
-        mesh.draw(program, uniforms | {"material": mesh.material})
+        mesh.draw(program, uniforms | mesh.material_uniforms(pictures))
     context.disable(context.DEPTH_TEST)
     target.release()
     depth.release()

@@ -1,4 +1,4 @@
-"""The two matrices of a rasteriser."""
+"""The matrices of a rasteriser."""
 
 from __future__ import annotations
 
@@ -27,3 +27,10 @@ def projection_matrix(tan_half_x: float, tan_half_y: float, near: float, far: fl
             [0, 0, -1, 0],
         ]
     )
+
+
+def orthographic_matrix(centre: np.ndarray, half: np.ndarray) -> np.ndarray:
+    """View to clip space of parallel light, (4, 4): x and y within `half`, (2,), of `centre`, (2,); depth is 0."""
+    matrix = np.diag([1 / half[0], 1 / half[1], 0.0, 1.0])
+    matrix[:2, 3] = -centre / half
+    return matrix

@@ -11,10 +11,12 @@ import numpy as np
 from gpu_impl.device import Device, shared_device
 from gpu_impl.frame import Frame
 from gpu_impl.geometry import GBuffer, Geometry, render_gbuffer
+from gpu_impl.light_uniforms import placed
 from gpu_impl.scattering import add_scattering
 from gpu_impl.shadow_map import ShadowMap, check_map_size, render_shadow_map
 from gpu_impl.surface import add_surface
 from gpu_impl.techniques import Technique
+from gpu_impl.textures import PictureTextures
 from gpu_impl.upsample import upsample
 from scenes.errors import InputError
 from scenes.model import Scene
@@ -47,6 +49,8 @@ class Renderer:
             limit = self.device.largest_texture
             raise InputError(f"The image is larger than this OpenGL allows ({limit} pixels on a side).")
         self._geometry = Geometry(self.device, scene)
+        self._pictures = PictureTextures(self.device)
+        self._lights = tuple(placed(scene, light) for light in scene.lights)
         self._views: dict[int, View] = {}
 
     def __enter__(self) -> Renderer:
@@ -58,6 +62,7 @@ class Renderer:
     def release(self) -> None:
         """Give back what the scene holds on the GPU."""
         self._geometry.release()
+        self._pictures.release()
         for view in self._views.values():
             view.release()
         self._views.clear()
@@ -71,7 +76,7 @@ class Renderer:
             The technique cannot take this scene.
         """
         technique.check()
-        technique.check_phase(self.scene.phase)
+        technique.check_scene(self.scene)
         for light in self.scene.lights:
             check_map_size(self.device, light, technique.shadow_map)
         if technique.shadow_map not in self._views:
@@ -110,12 +115,12 @@ class Renderer:
     def _see(self, shadow_map_size: int) -> View:
         """Run the passes that no technique changes; the caller releases the view."""
         device, scene = self.device, self.scene
-        gbuffer = render_gbuffer(device, self._geometry, scene.camera)
+        gbuffer = render_gbuffer(device, self._geometry, scene.camera, self._pictures)
         surface = device.texture((scene.camera.width, scene.camera.height), 4)
         device.clear(surface)
-        shadow_maps = tuple(render_shadow_map(device, self._geometry, light, shadow_map_size) for light in scene.lights)
-        for light, shadow_map in zip(scene.lights, shadow_maps, strict=True):
-            add_surface(device, surface, scene, light, gbuffer, shadow_map)
+        shadow_maps = tuple(render_shadow_map(device, self._geometry, light, shadow_map_size) for light in self._lights)
+        for light, shadow_map in zip(self._lights, shadow_maps, strict=True):
+            add_surface(device, surface, scene, light, gbuffer, shadow_map, self._pictures)
         return View(gbuffer, surface, shadow_maps)
 
     def _scatter(self, technique: Technique, view: View) -> Any:
@@ -123,8 +128,8 @@ class Renderer:
         device, scene, step = self.device, self.scene, technique.downsample
         texture = device.texture((-(-scene.camera.width // step), -(-scene.camera.height // step)), 4)
         device.clear(texture)
-        for light, shadow_map in zip(scene.lights, view.shadow_maps, strict=True):
-            add_scattering(device, texture, technique, scene, light, view.gbuffer, shadow_map)
+        for light, shadow_map in zip(self._lights, view.shadow_maps, strict=True):
+            add_scattering(device, texture, technique, scene, light, view.gbuffer, shadow_map, self._pictures)
         return upsample(device, texture, scene.camera, view.gbuffer, step) if step > 1 else texture
 
 

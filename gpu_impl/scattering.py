@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
+from analytic.phase import Phase
 from gpu_impl.device import Device
 from gpu_impl.geometry import GBuffer, camera_uniforms
-from gpu_impl.light_uniforms import light_uniforms
+from gpu_impl.light_uniforms import light_defines, light_uniforms
 from gpu_impl.shader_source import set_uniforms
 from gpu_impl.shadow_map import ShadowMap, tile_count
 from gpu_impl.techniques import AIRLIGHT_MODELS, VISIBILITIES, Technique
+from gpu_impl.textures import PictureTextures
 from scenes.model import Light, Scene
+
+# binding of `phase_table` in phase/tabulated.glsl
+PHASE_TABLE = 3
 
 
 def add_scattering(
@@ -23,13 +30,14 @@ def add_scattering(
     light: Light,
     gbuffer: GBuffer,
     shadow_map: ShadowMap,
+    pictures: PictureTextures,
 ) -> None:
     """Add one light's airlight to `target`, whose pixels stand for every N-th of the image's."""
     grey = np.ptp(np.broadcast_to(scene.medium.sigma_t, 3)) == 0
     model = AIRLIGHT_MODELS[technique.airlight]
     program = device.program(
         "scattering.frag.glsl",
-        defines={"GREY": int(grey), "TILES": tile_count(light), "STEPS": technique.steps},
+        defines=light_defines(scene, light) | {"GREY": int(grey), "TILES": tile_count(light), "STEPS": technique.steps},
         includes={
             "<airlight>": model.source,
             "<visibility>": VISIBILITIES[technique.visibility].source,
@@ -37,8 +45,22 @@ def add_scattering(
         },
         generated=model.generated,
     )
-    set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light))
+    set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, pictures))
     set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))
-    # the parameters of a phase function are uniforms of the same names
-    set_uniforms(program, vars(scene.phase) | {"downsample": technique.downsample})
-    device.fill(program, target, add=True)
+    set_uniforms(program, {"downsample": technique.downsample})
+    with phase_uniforms(device, program, scene.phase):
+        device.fill(program, target, add=True)
+
+
+@contextmanager
+def phase_uniforms(device: Device, program: Any, phase: Phase) -> Iterator[None]:
+    """Hand a phase function's parameters over: numbers as uniforms of the same names, a table as a storage buffer."""
+    table = getattr(phase, "values", None)
+    if table is None:
+        set_uniforms(program, vars(phase))
+        yield
+        return
+    buffer = device.context.buffer(np.asarray(table, np.float32))
+    buffer.bind_to_storage_buffer(PHASE_TABLE)
+    yield
+    buffer.release()

@@ -9,7 +9,7 @@ import numpy as np
 
 from gpu_impl.device import Device
 from gpu_impl.geometry import Geometry
-from gpu_impl.matrices import projection_matrix, view_matrix
+from gpu_impl.matrices import orthographic_matrix, projection_matrix, view_matrix
 from scenes.errors import InputError
 from scenes.model import Light
 
@@ -30,8 +30,8 @@ CUBE_FACES = (
 
 
 def tile_count(light: Light) -> int:
-    """How many tiles the light's map has: 1 for a narrow spot, 6 for the faces of a cube."""
-    return 1 if light.cutoff_angle <= WIDEST_FLAT_MAP else len(CUBE_FACES)
+    """How many tiles the light's map has: 1 for a narrow spot or parallel light, 6 for the faces of a cube."""
+    return 1 if light.kind == "directional" or light.cutoff_angle <= WIDEST_FLAT_MAP else len(CUBE_FACES)
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class ShadowMap:
     texture : moderngl.Texture     R32F, (tiles * size, size): distance to the light [scene unit]
     matrices : (tiles, 4, 4)       world to clip space of each tile
     size : int                     texels on a side of a tile
-    texel_slope : float            width of a texel at distance 1
+    texel_slope : float            width of a texel at distance 1, or anywhere in parallel light
     """
 
     texture: Any
@@ -72,20 +72,15 @@ def check_map_size(device: Device, light: Light, size: int) -> None:
 def render_shadow_map(device: Device, geometry: Geometry, light: Light, size: int) -> ShadowMap:
     """Draw the scene from the light; the caller releases the texture."""
     context, tiles = device.context, tile_count(light)
-    # a hair wider than the cone, so that its edge falls inside the map
-    tan_half = 1.0 if tiles > 1 else np.tan(light.cutoff_angle) * 1.01
-    if tiles == 1:
-        views = [view_matrix(light.position, light.direction, _any_up(light.direction))]
-    else:
-        views = [view_matrix(light.position, np.array(f, float), np.array(up, float)) for f, up in CUBE_FACES]
-    projection = projection_matrix(tan_half, tan_half, NEAR, FAR)
-    matrices = np.stack([projection @ view for view in views]).astype(np.float32)
+    matrices, texel_slope = _tiles(light, size, geometry.bounds)
     program = device.program("shadow_map.frag.glsl", vertex="shadow_map.vert.glsl")
     texture = device.texture((tiles * size, size), 1)
     target = context.framebuffer(color_attachments=[texture])
     target.use()
     target.clear(red=3e38)
     context.disable(context.DEPTH_TEST)
+    parallel_to = tuple(light.direction) if light.kind == "directional" else (0.0, 0.0, 0.0)
+    source = {"light_position": tuple(light.position), "parallel_to": parallel_to}
     # an occluder may be as near to the light as it likes
     context.enable_direct(DEPTH_CLAMP)
     context.enable(context.BLEND)
@@ -93,12 +88,34 @@ def render_shadow_map(device: Device, geometry: Geometry, light: Light, size: in
     for tile, matrix in enumerate(matrices):
         target.viewport = (tile * size, 0, size, size)
         for mesh in geometry.meshes:
-            mesh.draw(program, {"world_to_clip": matrix, "light_position": tuple(light.position)})
+            mesh.draw(program, {"world_to_clip": matrix, **source})
     context.disable_direct(DEPTH_CLAMP)
     context.blend_equation = context.FUNC_ADD
     context.disable(context.BLEND)
     target.release()
-    return ShadowMap(texture, matrices, size, 2 * float(tan_half) / size)
+    return ShadowMap(texture, matrices, size, texel_slope)
+
+
+def _tiles(light: Light, size: int, bounds: np.ndarray) -> tuple[np.ndarray, float]:
+    """World to clip space of each tile, (tiles, 4, 4), and the width of a texel; see `ShadowMap`."""
+    if tile_count(light) > 1:
+        views = [view_matrix(light.position, np.array(f, float), np.array(up, float)) for f, up in CUBE_FACES]
+        projections, tan_half = [projection_matrix(1.0, 1.0, NEAR, FAR)] * len(views), 1.0
+    elif light.kind == "directional":
+        view = view_matrix(light.position, light.direction, _any_up(light.direction))
+        seen = bounds @ view[:3, :3].T + view[:3, 3]
+        low, high = seen.min(axis=0)[:2], seen.max(axis=0)[:2]
+        # a hair wider than what casts shadows; nothing beyond it does
+        half = np.maximum(1.01 * (high - low) / 2, 1e-6)
+        views, tan_half = [view], float(half.max())
+        projections = [orthographic_matrix((low + high) / 2, half)]
+    else:
+        # a hair wider than the cone, so that its edge falls inside the map
+        tan_half = float(np.tan(light.cutoff_angle)) * 1.01
+        views = [view_matrix(light.position, light.direction, _any_up(light.direction))]
+        projections = [projection_matrix(tan_half, tan_half, NEAR, FAR)]
+    tiles = [projection @ view for projection, view in zip(projections, views, strict=True)]
+    return np.stack(tiles).astype(np.float32), 2 * tan_half / size
 
 
 def _any_up(forward: np.ndarray) -> np.ndarray:

@@ -6,17 +6,24 @@ from typing import Any
 
 from gpu_impl.device import Device
 from gpu_impl.geometry import GBuffer, camera_uniforms
-from gpu_impl.light_uniforms import light_uniforms
+from gpu_impl.light_uniforms import light_defines, light_uniforms
 from gpu_impl.shader_source import set_uniforms
 from gpu_impl.shadow_map import ShadowMap, tile_count
+from gpu_impl.textures import PictureTextures
 from scenes.model import Light, Scene
 
 
 def add_surface(
-    device: Device, target: Any, scene: Scene, light: Light, gbuffer: GBuffer, shadow_map: ShadowMap
+    device: Device,
+    target: Any,
+    scene: Scene,
+    light: Light,
+    gbuffer: GBuffer,
+    shadow_map: ShadowMap,
+    pictures: PictureTextures,
 ) -> None:
-    """Add one light's direct light on diffuse surfaces, attenuated on both legs, to `target`."""
-    program = device.program("surface.frag.glsl", defines={"TILES": tile_count(light)})
-    set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light))
+    """Add one light's direct light on diffuse and Phong surfaces, attenuated on both legs, to `target`."""
+    program = device.program("surface.frag.glsl", defines={"TILES": tile_count(light), **light_defines(scene, light)})
+    set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, pictures))
     set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))
     device.fill(program, target, add=True)

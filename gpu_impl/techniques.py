@@ -9,9 +9,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from analytic.phase import Phase
 from gpu_impl.quadrature_nodes import gauss_legendre_glsl
 from scenes.errors import InputError
+from scenes.model import Scene
 
 DOWNSAMPLES = (1, 2, 4, 8)
 MOST_STEPS = 1 << 20
@@ -26,6 +26,7 @@ class AirlightShader:
     source: str
     what: str
     phases: tuple[str, ...] | None = None  # the phase functions it takes; None for all
+    any_light: bool = True  # whether it takes directional lights, and lights outside a bounded medium
     generated: Mapping[str, str] = field(default_factory=dict)  # texts of includes that are computed
 
 
@@ -39,7 +40,9 @@ class Visibility:
 
 AIRLIGHT_MODELS = {
     "riemann": AirlightShader("airlight/riemann.glsl", "one point sample a piece (Nishita 1987)"),
-    "weng2010": AirlightShader("airlight/weng2010.glsl", "isotropic closed form, repaired", ("isotropic",)),
+    "weng2010": AirlightShader(
+        "airlight/weng2010.glsl", "isotropic closed form, repaired", phases=("isotropic",), any_light=False
+    ),
     "quadrature": AirlightShader(
         "airlight/quadrature.glsl",
         f"{QUADRATURE_NODES}-node Gauss-Legendre under a rational map",
@@ -84,14 +87,23 @@ class Technique:
         if self.downsample not in DOWNSAMPLES:
             raise InputError(f"downsample is {self.downsample}; use {', '.join(map(str, DOWNSAMPLES))}.")
 
-    def check_phase(self, phase: Phase) -> None:
-        """Raise InputError where the airlight model cannot take the scene's phase function."""
-        allowed = AIRLIGHT_MODELS[self.airlight].phases
-        if allowed is not None and phase.name not in allowed:
+    def check_scene(self, scene: Scene) -> None:
+        """Raise InputError where the airlight model cannot take the scene's phase function or one of its lights."""
+        model = AIRLIGHT_MODELS[self.airlight]
+        if model.phases is not None and scene.phase.name not in model.phases:
             raise InputError(
-                f"The airlight model {self.airlight} takes the phase function {' or '.join(allowed)}, and the scene "
-                f"has {phase.name}: use {self.visibility}+quadrature, or set the scene's phase function."
+                f"The airlight model {self.airlight} takes the phase function {' or '.join(model.phases)}, and the "
+                f"scene has {scene.phase.name}: use {self.visibility}+quadrature, or set the scene's phase function."
             )
+        if model.any_light:
+            return
+        for light in scene.lights:
+            if light.kind == "directional" or not (scene.boundary is None or scene.boundary.contains(light.position)):
+                where = "" if light.kind == "directional" else " outside it"
+                raise InputError(
+                    f"The airlight model {self.airlight} takes point and spot lights inside the medium, and the scene "
+                    f"has a {light.kind} light{where}: use {self.visibility}+quadrature."
+                )
 
 
 TECHNIQUES = {

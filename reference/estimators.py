@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.integrator import mi
+from reference.integrator import eye_path, mi
 from reference.mitsuba_scene import instantiate
 from scenes.model import Scene
 
@@ -84,7 +84,7 @@ class Equiangular(PixelCentres):
     """The main estimator: the integrator `single_scattering` with stratified distances."""
 
     name = "equiangular"
-    version = 6
+    version = 7
     pixel_filter = "centre"
     layers: tuple[str, ...] = ("scattering",)
 
@@ -97,8 +97,8 @@ class Equiangular(PixelCentres):
     def fixed(self) -> dict[str, Image]:
         """Direct light on surfaces: the lights have no extent, so one ray a pixel is exact."""
         ray = self.rays(dr.arange(mi.UInt32, self.shape[0] * self.shape[1]))
-        si = self.mitsuba.scene.ray_intersect(ray)
-        surface = self.integrator.surface(self.mitsuba.scene, ray, si, self.mitsuba.medium)
+        path = eye_path(self.mitsuba.scene, ray, self.mitsuba.medium)
+        surface = self.integrator.surface(self.mitsuba.scene, ray, path, self.mitsuba.medium)
         return {"surface": np.ascontiguousarray(np.array(surface, dtype=np.float64).T).reshape(*self.shape, 3)}
 
     def one_pass(self, seed: int) -> dict[str, Image]:
@@ -106,8 +106,8 @@ class Equiangular(PixelCentres):
         mitsuba_scene, medium = self.mitsuba.scene, self.mitsuba.medium
 
         def airlight(ray: Any) -> Any:
-            end = dr.minimum(mitsuba_scene.ray_intersect_preliminary(ray).t, ray.maxt)
-            return self.integrator.scattering(mitsuba_scene, self.sampler, ray, end, medium)
+            path = eye_path(mitsuba_scene, ray, medium)
+            return self.integrator.scattering(mitsuba_scene, self.sampler, ray, path, medium)
 
         return {"scattering": self.average(seed, airlight)}
 

@@ -1,4 +1,4 @@
-"""A Mitsuba integrator for single scattering in a homogeneous medium that fills space.
+"""A Mitsuba integrator for single scattering in a homogeneous medium, which fills space or is bounded.
 
 Importing this module loads Mitsuba and registers the plugin `single_scattering`.
 """
@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from reference.fog_path import FogPath, bounded_path, fog_of, is_bounded, whole_path
 from scenes.errors import InputError
 from scenes.mitsuba_setup import mitsuba
 
@@ -37,8 +38,9 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
       to the light (Kulla and Fajardo 2012, section 4), which leaves no singularity to the estimator; transmittance is
       analytic and visibility a shadow ray. With the sampler `stratified` the distances of a pixel are stratified.
 
-    Point and spot lights are sampled, all of them for each ray. The sensor needs the medium, as Mitsuba's own
-    integrators need it. AOVs hold the two parts.
+    Point, spot and directional lights are sampled, all of them for each ray. The sensor needs the medium that it is in,
+    as Mitsuba's own integrators need it. A medium is bounded by a shape with a `null` BSDF that has it as its interior.
+    AOVs hold the two parts.
     """
 
     # share of the way to the light over which its light is attenuated; less only to imitate `volpath` (agreement.py)
@@ -48,65 +50,90 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
         self, scene: Any, sampler: Any, ray: Any, medium: Any = None, active: Any = True
     ) -> tuple[Any, Any, list[Any]]:
         """Estimate the radiance along `ray`; the interface of every Mitsuba integrator."""
-        si = scene.ray_intersect(ray, active)
-        surface = self.surface(scene, ray, si, medium, active)
-        scattering = self.scattering(scene, sampler, ray, dr.minimum(si.t, ray.maxt), medium, active)
+        path = eye_path(scene, ray, medium, active)
+        surface = self.surface(scene, ray, path, medium, active)
+        scattering = self.scattering(scene, sampler, ray, path, medium, active)
         aovs = [part[channel] for part in (surface, scattering) for channel in range(3)]
-        return surface + scattering, active & si.is_valid(), aovs
+        return surface + scattering, active & path.blocked, aovs
 
     def aov_names(self) -> list[str]:
         """Names of the AOVs, in the order in which `sample` gives them."""
         return [f"{part}.{channel}" for part in ("surface", "scattering") for channel in "RGB"]
 
-    def surface(self, scene: Any, ray: Any, si: Any, medium: Any, active: Any = True) -> Any:
+    def surface(self, scene: Any, ray: Any, path: FogPath, medium: Any, active: Any = True) -> Any:
         """Direct light on the surface that the ray hits, as it reaches the eye.
 
         Parameters
         ----------
         ray : Ray3f
-        si : SurfaceInteraction3f    where `ray` hits
-        medium : Medium
+        path : FogPath               of `ray`
+        medium : Medium or None      the one that the camera is in
 
         Returns
         -------
         radiance : Spectrum
         """
-        radiance = mi.Spectrum(0.0)
-        hit = active & si.is_valid()
+        radiance, fog, bounded = mi.Spectrum(0.0), fog_of(scene, medium), is_bounded(scene)
+        rest = mi.Ray3f(ray)
+        rest.o, rest.maxt = ray(path.t_last), ray.maxt - path.t_last
+        si = scene.ray_intersect(rest, active & path.blocked)
+        hit = active & path.blocked & si.is_valid()
         bsdf = si.bsdf(ray)
         for emitter in delta_emitters(scene):
             ds, weight = emitter.sample_direction(si, mi.Point2f(0.5), hit)
-            lit = hit & sees(scene, ds, SURFACE_MARGIN, hit)
+            lit, leg = self._leg(scene, ds, SURFACE_MARGIN, bounded, path.ends_in_fog, hit)
             value = bsdf.eval(mi.BSDFContext(), si, si.to_local(ds.d), lit)
-            radiance[lit] += value * weight * self._transmittance(medium, ray, si.t + self.light_share * ds.dist)
+            radiance[lit] += value * weight * self._transmittance(fog, ray, path.fog_length + leg)
         return radiance
 
-    def scattering(self, scene: Any, sampler: Any, ray: Any, t_max: Any, medium: Any, active: Any = True) -> Any:
+    def scattering(self, scene: Any, sampler: Any, ray: Any, path: FogPath, medium: Any, active: Any = True) -> Any:
         """Airlight of one distance sample per light.
 
         Parameters
         ----------
-        sampler : Sampler    one number is taken per light
+        sampler : Sampler            one number is taken per light
         ray : Ray3f
-        t_max : Float        where the ray ends [scene unit]
-        medium : Medium
+        path : FogPath               of `ray`
+        medium : Medium or None      the one that the camera is in
 
         Returns
         -------
         radiance : Spectrum
         """
-        radiance = mi.Spectrum(0.0)
+        radiance, fog, bounded = mi.Spectrum(0.0), fog_of(scene, medium), is_bounded(scene)
         for emitter in delta_emitters(scene):
-            begin, end = reach(emitter, ray, t_max)
-            t, inverse_pdf = equiangular(ray, begin, end, position_of(emitter, ray), sampler.next_1d(active))
-            mei = self._interaction(medium, ray, t)
+            t, inverse_pdf = self._distance(emitter, ray, path, fog, sampler.next_1d(active))
+            mei = self._interaction(fog, ray, t)
             ds, weight = emitter.sample_direction(mei, mi.Point2f(0.5), active)
-            lit = active & sees(scene, ds, FOG_MARGIN, active)
-            phase, _ = medium.phase_function().eval_pdf(mi.PhaseFunctionContext(None), mei, ds.d, lit)
-            sigma_s, _, _ = medium.get_scattering_coefficients(mei, lit)
-            through = self._transmittance(medium, ray, t + self.light_share * ds.dist)
+            there, through_fog = active, t
+            if bounded:
+                # a body that is not convex is left and entered again
+                before = mi.Ray3f(ray)
+                before.maxt = t
+                so_far = bounded_path(scene, before, medium is not None, active)
+                there, through_fog = active & so_far.ends_in_fog, so_far.fog_length
+            lit, leg = self._leg(scene, ds, FOG_MARGIN, bounded, mi.Bool(True), there)
+            phase, _ = fog.phase_function().eval_pdf(mi.PhaseFunctionContext(None), mei, ds.d, lit)
+            sigma_s, _, _ = fog.get_scattering_coefficients(mei, lit)
+            through = self._transmittance(fog, ray, through_fog + leg)
             radiance[lit] += sigma_s * phase * weight * through * inverse_pdf
         return radiance
+
+    def _distance(self, emitter: Any, ray: Any, path: FogPath, fog: Any, u: Any) -> tuple[Any, Any]:
+        """Sample where the light is scattered: distance and inverse density [scene unit]."""
+        begin, end = reach(emitter, ray, path.fog_end)
+        begin, end = dr.clip(begin, path.fog_begin, path.fog_end), dr.clip(end, path.fog_begin, path.fog_end)
+        if mi.has_flag(emitter.flags(), mi.EmitterFlags.DeltaPosition):
+            return equiangular(ray, begin, end, position_of(emitter, ray), u)
+        _, _, sigma_t = fog.get_scattering_coefficients(self._interaction(fog, ray, mi.Float(0.0)))
+        return even_or_attenuated(begin, end, dr.min(sigma_t), u)
+
+    def _leg(self, scene: Any, ds: Any, margin: float, bounded: bool, in_fog: Any, active: Any) -> tuple[Any, Any]:
+        """Whether a light sees a point, and over what length its light is attenuated on the way [scene unit]."""
+        if not bounded:
+            return active & sees(scene, ds, margin, active), self.light_share * ds.dist
+        path = bounded_path(scene, from_light(ds, margin, self.light_share), in_fog, active)
+        return active & ~path.blocked, path.fog_length
 
     @staticmethod
     def _interaction(medium: Any, ray: Any, t: Any) -> Any:
@@ -129,36 +156,72 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
         return "SingleScattering[]"
 
 
-def sees(scene: Any, ds: Any, margin: float, active: Any) -> Any:
-    """Tell whether a light sees a point: a ray from the light to just before it.
+def eye_path(scene: Any, ray: Any, medium: Any, active: Any = True) -> FogPath:
+    """Follow a camera's ray to what it sees.
 
-    Mitsuba's own shadow rays leave a gap of some 1e-4 scene units, whatever the scene's unit is; this one is a share of
-    the distance.
+    Parameters
+    ----------
+    medium : Medium or None    the one that the camera is in
+    """
+    if not is_bounded(scene):
+        return whole_path(scene, ray, active)
+    # past the far plane too: there the ray would still leave the medium
+    endless = mi.Ray3f(ray)
+    endless.maxt = dr.inf
+    path = bounded_path(scene, endless, medium is not None, active)
+    beyond = path.t_end > ray.maxt
+    clipped = bounded_path(scene, ray, medium is not None, active & beyond)
+    return FogPath(
+        **{
+            field: dr.select(beyond, getattr(clipped, field), getattr(path, field))
+            for field in ("blocked", "t_last", "t_end", "fog_begin", "fog_end", "fog_length", "ends_in_fog")
+        }
+    )
+
+
+def from_light(ds: Any, margin: float, share: float = 1.0) -> Any:
+    """Ray3f from a light, or from a little before it, to just before a point.
 
     Parameters
     ----------
     ds : DirectionSample3f    from the point to the light
     margin : float            share of the way, before the point, in which nothing counts as an occluder
+    share : float             of the way to the light, from the point on, that the ray covers
     """
     ray = dr.zeros(mi.Ray3f)
-    ray.o, ray.d, ray.maxt = ds.p, -ds.d, ds.dist * (1 - margin)
-    return ~scene.ray_test(mi.Ray3f(ray), active)
+    ray.o, ray.d, ray.maxt = ds.p - ds.d * (ds.dist * (1 - share)), -ds.d, ds.dist * (share - margin)
+    return mi.Ray3f(ray)
+
+
+def sees(scene: Any, ds: Any, margin: float, active: Any) -> Any:
+    """Tell whether a light sees a point: a ray from the light to just before it.
+
+    Mitsuba's own shadow rays leave a gap of some 1e-4 scene units, whatever the scene's unit is; this one is a share of
+    the distance.
+    """
+    return ~scene.ray_test(from_light(ds, margin), active)
 
 
 def delta_emitters(scene: Any) -> list[Any]:
-    """Return the scene's emitters, each of which must be a point.
+    """Return the scene's emitters, each of which must be a point or infinitely far.
 
     Raises
     ------
     InputError
-        A light has an extent, or none is there.
+        A light has an extent, none is there, or light from infinitely far would have to cross fog without end.
     """
     emitters = scene.emitters()
     if not emitters:
         raise InputError("The scene has no light.")
     for emitter in emitters:
-        if not mi.has_flag(emitter.flags(), mi.EmitterFlags.DeltaPosition):
-            raise InputError(f"single_scattering samples point and spot lights, and the scene has: {emitter}.")
+        flags = emitter.flags()
+        directional = mi.has_flag(flags, mi.EmitterFlags.DeltaDirection)
+        if not (directional or mi.has_flag(flags, mi.EmitterFlags.DeltaPosition)):
+            raise InputError(
+                f"single_scattering samples point, spot and directional lights, and the scene has: {emitter}."
+            )
+        if directional and not is_bounded(scene):
+            raise InputError("A directional light needs a medium that a shape with a null BSDF holds.")
     return emitters
 
 
@@ -230,6 +293,26 @@ def equiangular(ray: Any, begin: Any, end: Any, position: Any, u: Any) -> tuple[
     t = dr.clip(mi.Float(s + t_h), begin, end)
     s = mi.Float64(t) - t_h
     return t, mi.Float(angle * (dr.square(h) + dr.square(s)) / h)
+
+
+def even_or_attenuated(begin: Any, end: Any, sigma_t: Any, u: Any) -> tuple[Any, Any]:
+    """Sample a distance on [begin, end] evenly or by e^(-sigma_t t), each half the time, for parallel light.
+
+    Where the light's own way grows shorter along the ray the integrand does not fall, so neither serves alone.
+
+    Returns
+    -------
+    t : Float              [scene unit]
+    inverse_pdf : Float    [scene unit]
+    """
+    length, rate, v = mi.Float64(end - begin), mi.Float64(sigma_t), mi.Float64(u)
+    # in fog so thin the two are one, and the differences from 1 below have lost their digits
+    rate = dr.maximum(rate, 1e-6 / dr.maximum(length, 1e-300))
+    lost = 1 - dr.exp(-rate * length)
+    s = dr.select(v < 0.5, -dr.log(1 - 2 * v * lost) / rate, (2 * v - 1) * length)
+    s = dr.clip(s, 0, length)
+    pdf = 0.5 * rate * dr.exp(-rate * s) / lost + 0.5 / dr.maximum(length, 1e-300)
+    return mi.Float(begin + s), mi.Float(dr.select(length > 0, 1 / pdf, 0))
 
 
 mi.register_integrator("single_scattering", SingleScattering)

@@ -35,9 +35,8 @@ def instantiate(scene: Scene) -> MitsubaScene:
         sentence = " ".join(str(error).split()).rstrip(".")
         raise InputError(f"Mitsuba refuses {scene.path}: {sentence}.") from None
     parameters = mi.traverse(made)
-    for mesh in scene.meshes:
-        if mesh.computed_normals and mesh.file and mesh.file.path.suffix.lower() == ".ply":
-            parameters[f"{mesh.name}.vertex_normals"] = mesh.normals.ravel()  # type: ignore[union-attr]
+    for name, normals in scene.normals.items():
+        parameters[name] = normals
     parameters.update()
     sensor = made.sensors()[0]
     return MitsubaScene(made, sensor, sensor.get_medium())

@@ -12,19 +12,17 @@ import re
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-import analytic
-from analytic.phase import Phase
+from scenes.camera import check_size, load_camera
 from scenes.catalogue import scene_path
 from scenes.errors import InputError
+from scenes.lights import load_light
+from scenes.media import Fog, load_medium, take_fog
 from scenes.mesh_files import sha256
 from scenes.mitsuba_setup import parser_config
-from scenes.model import Camera, Light, Mesh, Scene
-from scenes.shapes import FROM_FILE, load_shape
-from scenes.xml_nodes import Node, is_similarity
+from scenes.model import Array, Mesh, Scene
+from scenes.shapes import FROM_FILE, Shape, instance_of, load_shape
+from scenes.xml_nodes import Node
 
-LARGEST_SIDE = 16384
 # Mitsuba's parse_file takes parameters beside arguments of these names
 RESERVED = ("config", "filename")
 
@@ -45,7 +43,7 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
     """
     path = scene_path(scene)
     if size is not None:
-        _check_size(size)
+        check_size(size)
     texts = {name: str(value) for name, value in parameters.items()}
     for name, text in texts.items():
         # Mitsuba would take an empty number for 0
@@ -55,17 +53,35 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
             raise InputError(f"{path} cannot be given a parameter called {name}; rename it in the scene.")
     state = _parse(path, texts)
     root = Node(state, 0)
-    replaced = [node.plugin for node in root.children("Integrator") if node.plugin != "volpath"]
-    camera, medium_node = _camera(_only(root.children("Sensor"), "sensor", path), size)
-    medium, phase = _medium(medium_node)
-    lights = tuple(_light(node, medium_node) for node in root.children("Emitter"))
+    replaced = tuple(node.plugin for node in root.children("Integrator") if node.plugin != "volpath")
+    sensor = _only(root.children("Sensor"), "sensor", path)
+    camera, around = load_camera(sensor, size)
+    shapes = root.children("Shape")
+    fog = take_fog(sensor, camera, around, shapes, path.parent)
+    medium, phase = load_medium(fog.medium)
+    emitters = root.children("Emitter")
+    lights = tuple(load_light(node, fog.medium, fog.boundary is not None, path.parent) for node in emitters)
     if not lights:
         raise InputError(f"{path} has no light: add a <emitter type='point'> or a <emitter type='spot'>.")
-    meshes = _meshes(root, path)
+    meshes, normals = _meshes(shapes, fog, path.parent)
     # definitions that others refer to; who uses them has read them
-    root.children("Medium", "BSDF", "PhaseFunction")
+    root.children("Medium", "BSDF", "PhaseFunction", "Texture")
     root.finish()
-    return Scene(path.stem, path, texts, camera, meshes, lights, medium, phase, tuple(replaced), state, _digest(state))
+    return Scene(
+        name=path.stem,
+        path=path,
+        parameters=texts,
+        camera=camera,
+        meshes=meshes,
+        lights=lights,
+        medium=medium,
+        phase=phase,
+        boundary=fog.boundary,
+        normals=normals,
+        replaced=replaced,
+        parsed=state,
+        digest=_digest(state),
+    )
 
 
 def _parse(path: Path, parameters: dict[str, str]) -> Any:
@@ -101,142 +117,62 @@ def _only(nodes: list[Node], what: str, path: Path) -> Node:
     return nodes[0]
 
 
-def _camera(node: Node, size: tuple[int, int] | None) -> tuple[Camera, Node]:
-    if node.plugin != "perspective":
-        raise node.refuse("is not supported; use perspective.")
-    film = node.child("Film")
-    width, height = _film_size(node, film, size)
-    to_world = node.transform()
-    if not np.allclose(to_world[:3, :3].T @ to_world[:3, :3], np.eye(3), atol=1e-5):
-        raise node.refuse("has a 'to_world' that scales or shears; use <lookat>, rotations and translations.")
-    near, far = node.number("near_clip", 1e-2), node.number("far_clip", 1e4)
-    if not 0 < near < far:
-        raise node.refuse(f"has near_clip = {near} and far_clip = {far}; it should be 0 < near_clip < far_clip.")
-    tan_half_x = _tan_half_x(node, width / height)
-    medium = node.child("Medium")
-    if medium is None:
-        raise node.refuse(
-            "is not inside a medium, so there is no fog to render: put <ref id='...'/> of a medium in it."
-        )
-    node.children("Sampler")
-    node.finish()
-    return Camera(to_world, tan_half_x, near, far, width, height), medium
+def _meshes(shapes: list[Node], fog: Fog, folder: Path) -> tuple[tuple[Mesh, ...], dict[str, Array]]:
+    """Meshes of all shapes, instances among them, and the normals that Mitsuba is handed."""
+    meshes: list[Mesh] = []
+    normals: dict[str, Array] = {}
 
+    def keep(shape: Shape, name: str) -> None:
+        if shape.computed_normals and shape.mesh.normals is not None:
+            normals[f"{name}.vertex_normals"] = shape.mesh.normals.ravel()
 
-def _film_size(sensor: Node, film: Node | None, size: tuple[int, int] | None) -> tuple[int, int]:
-    if film is None:
-        raise sensor.refuse("has no film; add <film type='hdrfilm'/> with a width and a height.")
-    if film.plugin != "hdrfilm":
-        raise film.refuse("is not supported; use hdrfilm.")
-    width, height = film.integer("width", 768), film.integer("height", 576)
-    if size is None:
-        with film.located():
-            _check_size((width, height))
-    else:
-        width, height = size
-    # how the film stores its pixels and reconstructs them: airlight evaluates pixel centres and writes float32 EXR
-    film.ignore("file_format", "pixel_format", "component_format", "banner", "compensate", "sample_border")
-    film.children("ReconstructionFilter")
-    film.finish()
-    film.props["width"], film.props["height"] = width, height
-    return width, height
-
-
-def _check_size(size: tuple[int, int]) -> None:
-    width, height = size
-    if not all(isinstance(side, int | np.integer) and 1 <= side <= LARGEST_SIDE for side in (width, height)):
-        raise InputError(f"An image of {width} x {height} pixels cannot be made: use 1 to {LARGEST_SIDE} on each side.")
-
-
-def _tan_half_x(node: Node, aspect: float) -> float:
-    """Tangent of half the horizontal field of view, from Mitsuba's `fov` and `fov_axis`."""
-    fov = node.number("fov")
-    tan_half = float(np.tan(np.radians(fov) / 2))
-    # near 180 degrees float32 has no digits left
-    if not (0 < fov < 180 and tan_half < 1e3):
-        raise node.refuse(f"has 'fov' = {fov}, which should lie between 0 and 180 degrees.")
-    axis = node.take("fov_axis", "x")
-    if axis in ("smaller", "larger"):
-        axis = "y" if (aspect > 1) == (axis == "smaller") else "x"
-    if axis not in ("x", "y", "diagonal"):
-        raise node.refuse(f"has fov_axis = '{axis}'; use x, y, diagonal, smaller or larger.")
-    return tan_half * {"x": 1.0, "y": aspect, "diagonal": aspect / float(np.hypot(1, aspect))}[axis]
-
-
-def _medium(node: Node) -> tuple[analytic.Medium, Phase]:
-    if node.plugin != "homogeneous":
-        raise node.refuse("is not supported; use homogeneous.")
-    scale = node.number("scale", 1.0)
-    sigma_t, albedo = node.color("sigma_t", 1.0) * scale, node.color("albedo", 0.75)
-    phase_node = node.child("PhaseFunction")
-    node.ignore("sample_emitters", "has_spectral_extinction")
-    node.finish()
-    try:
-        return analytic.Medium.from_albedo(albedo, sigma_t), _phase(phase_node)
-    except ValueError as error:
-        raise node.refuse(f"cannot be used: {error}.") from None
-
-
-def _phase(node: Node | None) -> Phase:
-    if node is None:
-        return analytic.phase("isotropic")
-    settings = {}
-    if node.plugin == "hg":
-        settings["g"] = node.number("g", 0.8)
-    elif node.plugin not in ("isotropic", "rayleigh"):
-        raise node.refuse("is not supported; use isotropic, rayleigh or hg.")
-    node.finish()
-    try:
-        return analytic.phase(node.plugin, **settings)
-    except ValueError as error:
-        raise node.refuse(f"cannot be used: {error}.") from None
-
-
-def _light(node: Node, fog: Node) -> Light:
-    if node.plugin not in ("point", "spot"):
-        raise node.refuse("is not supported; use point or spot.")
-    if node.plugin == "point" and {"position", "to_world"} <= set(node.unread):
-        raise node.refuse("has both a 'position' and a 'to_world'; leave one out.")
-    to_world = node.transform()
-    if not is_similarity(to_world):
-        raise node.refuse("has a 'to_world' that scales unevenly or shears; use <lookat>, rotations and translations.")
-    position = to_world[:3, 3]
-    beam_width = cutoff_angle = np.pi
-    if node.plugin == "point":
-        position = node.point("position", position)
-    else:
-        cutoff = node.number("cutoff_angle", 20.0)
-        beam = node.number("beam_width", cutoff * 0.75)
-        if not (0 < cutoff < 90 and 0 <= beam <= cutoff):
-            raise node.refuse(f"has beam_width = {beam} and cutoff_angle = {cutoff}; use 0 <= beam <= cutoff < 90.")
-        beam_width, cutoff_angle = np.radians([beam, cutoff])
-    intensity = node.color("intensity", 1.0)
-    if not intensity.any():
-        raise node.refuse("has no intensity, so nothing would be seen.")
-    for medium in node.children("Medium"):
-        if medium.index != fog.index:
-            raise medium.refuse(f"around the {node.plugin} light is not the one that fills space.")
-    node.finish()
-    axis = to_world[:3, 2] / np.linalg.norm(to_world[:3, 2])
-    return Light(node.plugin, position, intensity, axis, float(beam_width), float(cutoff_angle))  # type: ignore[arg-type]
-
-
-def _meshes(root: Node, path: Path) -> tuple[Mesh, ...]:
-    meshes = []
-    for number, node in enumerate(root.children("Shape")):
+    for number, node in enumerate(shapes):
+        # Mitsuba would make a name up for each that has none
         if not node.props.id():
             node.props.set_id(f"shape_{number}")
-        meshes.append(load_shape(node, path.parent, node.props.id()))
-    return tuple(meshes)
+    groups = {node.index: node for node in shapes if node.plugin == "shapegroup"}
+    members = {index: _members(group, folder) for index, group in groups.items()}
+    for index, group in groups.items():
+        for shape in members[index]:
+            keep(shape, f"{group.props.id()}.{shape.mesh.name}")
+    for node in shapes:
+        if node.plugin == "shapegroup":
+            continue
+        name = node.props.id()
+        if node.plugin == "instance":
+            held = node.child("Shape")
+            if held is None or held.plugin != "shapegroup":
+                raise node.refuse("should hold a <ref> to one shapegroup.")
+            if held.index not in members:
+                members[held.index] = _members(held, folder)
+            to_world = node.transform()
+            node.finish()
+            meshes += [instance_of(shape.mesh, to_world, f"{name}.{shape.mesh.name}") for shape in members[held.index]]
+        else:
+            fog.check_outside(node)
+            shape = load_shape(node, folder, name)
+            keep(shape, name)
+            meshes.append(shape.mesh)
+    return tuple(meshes), normals
+
+
+def _members(group: Node, folder: Path) -> list[Shape]:
+    """Shapes of a shapegroup, in its own space."""
+    nodes = group.children("Shape")
+    group.finish()
+    for number, node in enumerate(nodes):
+        if not node.props.id():
+            node.props.set_id(f"member_{number}")
+    return [load_shape(node, folder, node.props.id()) for node in nodes]
 
 
 def _digest(state: Any) -> str:
-    """Hash of the parsed scene, with the contents of meshes in place of their paths."""
+    """Hash of the parsed scene, with the contents of meshes and pictures in place of their paths."""
     import mitsuba.parser as parser
 
     paths = {}
     for node in state.nodes:
-        if node.props.plugin_name() in FROM_FILE and "filename" in node.props:
+        if node.props.plugin_name() in (*FROM_FILE, "bitmap") and "filename" in node.props:
             # by content: the same mesh in another folder is the same scene
             paths[node] = node.props["filename"]
             node.props["filename"] = sha256(paths[node])

@@ -3,17 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenes import tessellate
-from scenes.mesh_files import MeshFile, Triangles, find_mesh, read_mesh, vertex_normals
-from scenes.model import Mesh
+from scenes.materials import load_material
+from scenes.mesh_files import MeshFile, find_mesh, read_mesh
+from scenes.model import Array, Mesh, Texture
+from scenes.triangles import Triangles, vertex_normals
 from scenes.xml_nodes import Node, is_similarity
 
 Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Shape:
+    """One shape node, read.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    computed_normals : bool   the file had none: `mesh.normals` are ours, and Mitsuba can be handed the same
+    to_world : (4, 4)         of an analytic shape, its own radius and centre included
+    """
+
+    mesh: Mesh
+    computed_normals: bool
+    to_world: Matrix
 
 
 def _sphere(node: Node) -> tuple[Triangles, Matrix]:
@@ -27,13 +47,14 @@ def _cylinder(node: Node) -> tuple[Triangles, Matrix]:
     start, end = node.point("p0", np.zeros(3)), node.point("p1", np.array([0.0, 0.0, 1.0]))
     radius = _radius(node)
     with node.located():
-        return tessellate.cylinder(start, end, radius), np.eye(4)
+        return tessellate.cylinder(), tessellate.cylinder_frame(start, end, radius)
 
 
 def _radius(node: Node) -> float:
     radius = node.number("radius", 1.0)
-    if not radius > 0:
-        raise node.refuse(f"has 'radius' = {radius}, which should be positive.")
+    # Mitsuba squares it in float32
+    if not 1e-15 < radius < 1e15:
+        raise node.refuse(f"has 'radius' = {radius}, which should be positive (1e-15 to 1e15).")
     return radius
 
 
@@ -50,9 +71,10 @@ ANALYTIC: dict[str, Callable[[Node], tuple[Triangles, Matrix]]] = {
 }
 FROM_FILE = ("ply", "obj")
 ROUND = ("sphere", "cylinder")
+SUPPORTED = (*FROM_FILE, *ANALYTIC)
 
 
-def load_shape(node: Node, scene_folder: Path, name: str) -> Mesh:
+def load_shape(node: Node, scene_folder: Path, name: str) -> Shape:
     """Turn one shape node into a mesh; the node's file name is replaced by the path of the mesh that was found.
 
     Raises
@@ -62,19 +84,14 @@ def load_shape(node: Node, scene_folder: Path, name: str) -> Mesh:
     """
     file: MeshFile | None = None
     if node.plugin in FROM_FILE:
-        filename, flat = node.text("filename"), node.flag("face_normals")
-        if not filename.lower().endswith(f".{node.plugin}"):
-            raise node.refuse(f"reads .{node.plugin} files, and its 'filename' is '{filename}'.")
-        with node.located():
-            file = find_mesh(filename, scene_folder)
-            triangles, local = read_mesh(file.path), np.eye(4)
-        node.props["filename"] = str(file.path)
+        file, triangles, flat = _from_file(node, scene_folder)
+        local = np.eye(4)
     elif node.plugin in ANALYTIC:
         # a cube is flat by nature: its normals come with it
         flat = False
         triangles, local = ANALYTIC[node.plugin](node)
     else:
-        raise node.refuse(f"is not supported; use one of {', '.join([*FROM_FILE, *ANALYTIC])}.")
+        raise node.refuse(f"is not supported; use one of {', '.join(SUPPORTED)}, or instance with a shapegroup.")
     to_world = node.transform()
     if node.plugin in ROUND and not is_similarity(to_world):
         raise node.refuse("has a 'to_world' that scales unevenly or shears, which Mitsuba does not draw; use a mesh.")
@@ -82,73 +99,80 @@ def load_shape(node: Node, scene_folder: Path, name: str) -> Mesh:
     # Mitsuba turns a mirrored sphere inside out
     if node.plugin == "sphere" and np.linalg.det(to_world[:3, :3]) < 0:
         flip = not flip
-    to_world = to_world @ local
-    for kind in ("Medium", "Emitter", "Sensor"):
-        for nested in node.children(kind):
-            raise nested.refuse("inside a shape is not supported yet; airlight takes fog that fills all of space.")
-    reflectance, two_sided = _diffuse(node.child("BSDF"))
+    material = load_material(node.child("BSDF"), scene_folder)
     node.finish()
-    mesh = _place(triangles, to_world, flat, flip, name, reflectance, two_sided, file)
-    if not np.isfinite(mesh.vertices).all():
-        raise node.refuse("has vertices beyond what float32 holds; scale it down.")
-    return mesh
+    mapping, coordinates = _coordinates(node.plugin, triangles)
+    if isinstance(material.diffuse, Texture) and coordinates is None:
+        raise node.refuse("has a picture as reflectance, and its file no texture coordinates; use an <rgb>.")
+    vertices, faces, normals = _place(node, triangles, to_world @ local, flat, flip)
+    # Mitsuba turns flipped ones itself, as it reads them; its own differ from ours by less than 1e-4 rad
+    computed = node.plugin == "ply" and not flat and not flip and triangles.normals is None
+    mesh = Mesh(name, vertices, faces, normals, material, file, mapping, coordinates)
+    return Shape(mesh, computed, to_world @ local)
+
+
+def instance_of(mesh: Mesh, to_world: Matrix, name: str) -> Mesh:
+    """Move a mesh of a shapegroup to where an instance has it.
+
+    Mitsuba turns the normals of the group with the instance; so a mirrored one keeps them on the outside, and its
+    triangles are turned over here to agree.
+    """
+    linear = to_world[:3, :3]
+    vertices = (mesh.vertices.astype(np.float64) @ linear.T + to_world[:3, 3]).astype(np.float32)
+    normals = None if mesh.normals is None else _unit(mesh.normals.astype(np.float64) @ np.linalg.inv(linear))
+    faces = mesh.faces[:, ::-1] if np.linalg.det(linear) < 0 else mesh.faces
+    return replace(mesh, name=name, vertices=vertices, faces=np.ascontiguousarray(faces), normals=normals)
+
+
+def _from_file(node: Node, scene_folder: Path) -> tuple[MeshFile, Triangles, bool]:
+    filename, flat = node.text("filename"), node.flag("face_normals")
+    if not filename.lower().endswith(f".{node.plugin}"):
+        raise node.refuse(f"reads .{node.plugin} files, and its 'filename' is '{filename}'.")
+    # read_mesh turns v as Mitsuba's plugins do by default: that of an OBJ, and not that of a PLY
+    turned = node.flag("flip_tex_coords", node.plugin == "obj") != (node.plugin == "obj")
+    with node.located():
+        file = find_mesh(filename, scene_folder)
+        triangles = read_mesh(file.path)
+    node.props["filename"] = str(file.path)
+    if turned and triangles.uv is not None:
+        triangles = replace(triangles, uv=np.stack([triangles.uv[:, 0], 1 - triangles.uv[:, 1]], axis=1))
+    return file, triangles, flat
+
+
+def _coordinates(plugin: str, triangles: Triangles) -> tuple[Literal["uv", "sphere", "cylinder", "disk"], Array | None]:
+    """What a picture on the shape is looked up by; see `Mesh.mapping`."""
+    if plugin in ("sphere", "cylinder", "disk"):
+        return plugin, triangles.vertices  # type: ignore[return-value]
+    if triangles.uv is None:
+        return "uv", None
+    return "uv", np.column_stack([triangles.uv, np.zeros(len(triangles.uv), np.float32)])
 
 
 def _place(
-    triangles: Triangles,
-    to_world: Matrix,
-    flat: bool,
-    flip: bool,
-    name: str,
-    reflectance: NDArray[np.float64],
-    two_sided: bool,
-    file: MeshFile | None,
-) -> Mesh:
+    node: Node, triangles: Triangles, to_world: Matrix, flat: bool, flip: bool
+) -> tuple[Array, Array, Array | None]:
+    """Vertices, faces and normals in world space."""
     linear = to_world[:3, :3]
     vertices = np.asarray(triangles.vertices, np.float64) @ linear.T + to_world[:3, 3]
-    with np.errstate(over="ignore"):  # the caller refuses what becomes infinite
+    with np.errstate(over="ignore"):  # what becomes infinite is refused
         placed = vertices.astype(np.float32)
+    if not np.isfinite(placed).all():
+        raise node.refuse("has vertices beyond what float32 holds; scale it down.")
     faces = triangles.faces
     if flat:
         normals = None
     elif triangles.normals is None:
-        normals = np.asarray(vertex_normals(placed, faces), np.float64)
+        normals = vertex_normals(placed, faces)
     else:
         # the transpose of the inverse, which keeps normals normal under uneven scaling
-        normals = np.asarray(triangles.normals, np.float64) @ np.linalg.inv(linear)
-        length = np.linalg.norm(normals, axis=-1, keepdims=True)
-        # a file may hold a normal of length zero; it stays one, and its surface black
-        normals /= np.where(length > 0, length, 1)
+        normals = _unit(np.asarray(triangles.normals, np.float64) @ np.linalg.inv(linear))
     if flip:
         faces = faces[:, ::-1]
         normals = None if normals is None else -normals
-    return Mesh(
-        name=name,
-        vertices=placed,
-        faces=np.ascontiguousarray(faces, dtype=np.uint32),
-        normals=None if normals is None else normals.astype(np.float32),
-        # Mitsuba turns flipped ones itself, as it reads them; its own differ from ours by less than 1e-4 rad
-        computed_normals=file is not None and not flat and not flip and triangles.normals is None,
-        reflectance=reflectance,
-        two_sided=two_sided,
-        file=file,
-    )
+    return placed, np.ascontiguousarray(faces, dtype=np.uint32), normals
 
 
-def _diffuse(node: Node | None) -> tuple[NDArray[np.float64], bool]:
-    """Reflectance and two-sidedness of a BSDF; Mitsuba's default is diffuse with 0.5."""
-    if node is None:
-        return np.full(3, 0.5), False
-    if node.plugin == "twosided":
-        inner = node.children("BSDF")
-        node.finish()
-        if len(inner) != 1 or inner[0].plugin == "twosided":
-            raise node.refuse("should hold one diffuse BSDF for both sides.")
-        return _diffuse(inner[0])[0], True
-    if node.plugin != "diffuse":
-        raise node.refuse("is not supported; use diffuse or twosided.")
-    reflectance = node.color("reflectance", 0.5)
-    if (reflectance > 1).any():
-        raise node.refuse(f"has 'reflectance' = {reflectance.tolist()}, which should be at most 1.")
-    node.finish()
-    return reflectance, False
+def _unit(normals: Matrix) -> NDArray[np.float32]:
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    # a file may hold a normal of length zero; it stays one, and its surface black
+    return (normals / np.where(length > 0, length, 1)).astype(np.float32)

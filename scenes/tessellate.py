@@ -49,22 +49,35 @@ def rectangle() -> Triangles:
     )
 
 
+# for each side of a cube, the directions in which Mitsuba's u and v grow
+CUBE_SIDES = (
+    ((-1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    ((1, 0, 0), (0, 1, 0), (0, 0, -1)),
+    ((0, -1, 0), (0, 0, 1), (1, 0, 0)),
+    ((0, 1, 0), (-1, 0, 0), (0, 0, -1)),
+    ((0, 0, -1), (0, -1, 0), (1, 0, 0)),
+    ((0, 0, 1), (0, 1, 0), (1, 0, 0)),
+)
+
+
 @lru_cache(maxsize=1)
 def cube() -> Triangles:
-    """[-1, 1]^3: six flat sides of four vertices each, normals outward."""
+    """[-1, 1]^3: six flat sides of four vertices each, normals outward, a picture on each side."""
     vertices: list[NDArray[np.float64]] = []
     normals: list[NDArray[np.float64]] = []
     faces: list[list[int]] = []
-    for axis in range(3):
-        for side in (-1.0, 1.0):
-            normal = np.roll([side, 0.0, 0.0], axis)
-            u = np.roll([0.0, 1.0, 0.0], axis)
-            v = np.cross(normal, u)
-            first = len(vertices)
-            vertices += [normal - u - v, normal + u - v, normal + u + v, normal - u + v]
-            normals += [normal] * 4
-            faces += [[first, first + 1, first + 2], [first + 2, first + 3, first]]
-    return Triangles(_frozen(vertices), _frozen_faces(faces), _frozen(normals))
+    for side in CUBE_SIDES:
+        normal, u, v = (np.array(direction, np.float64) for direction in side)
+        first = len(vertices)
+        vertices += [normal - u - v, normal + u - v, normal + u + v, normal - u + v]
+        normals += [normal] * 4
+        corners = [first, first + 1, first + 2, first + 3]
+        # counter-clockwise from outside, whichever hand (u, v, normal) is of
+        if np.cross(u, v) @ normal < 0:
+            corners.reverse()
+        faces += [corners[:3], [corners[2], corners[3], corners[0]]]
+    corner_uv = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    return Triangles(_frozen(vertices), _frozen_faces(faces), _frozen(normals), _frozen(corner_uv * 6))
 
 
 @lru_cache(maxsize=1)
@@ -77,8 +90,21 @@ def disk() -> Triangles:
     return Triangles(_frozen(vertices), _frozen_faces(faces), _frozen([[0, 0, 1]] * len(vertices)))
 
 
-def cylinder(p0: NDArray[np.floating], p1: NDArray[np.floating], radius: float) -> Triangles:
-    """Open tube (no caps, as Mitsuba's), normals outward.
+@lru_cache(maxsize=1)
+def cylinder() -> Triangles:
+    """Open unit tube (no caps, as Mitsuba's) around the z axis from z = 0 to 1, normals outward."""
+    rim = _circle()
+    vertices = np.vstack([np.column_stack([rim, np.full(SIDES, z)]) for z in (0.0, 1.0)])
+    here = np.arange(SIDES)
+    there = (here + 1) % SIDES
+    faces = np.vstack(
+        [np.column_stack([here, there, there + SIDES]), np.column_stack([there + SIDES, here + SIDES, here])]
+    )
+    return Triangles(_frozen(vertices), _frozen_faces(faces), _frozen(vertices * [1, 1, 0]))
+
+
+def cylinder_frame(p0: NDArray[np.floating], p1: NDArray[np.floating], radius: float) -> NDArray[np.float64]:
+    """Place the unit tube, (4, 4).
 
     Parameters
     ----------
@@ -87,29 +113,27 @@ def cylinder(p0: NDArray[np.floating], p1: NDArray[np.floating], radius: float) 
 
     Raises
     ------
-    InputError   the tube has no length or no radius
+    InputError   the tube has no length
+
+    Where its seam lies is Mitsuba's choice (Duff et al. 2017, "Building an Orthonormal Basis, Revisited"), and pictures
+    on it follow.
     """
     start, end = np.asarray(p0, np.float64), np.asarray(p1, np.float64)
     length = float(np.linalg.norm(end - start))
-    if not (np.isfinite(length) and length > 0.0 and np.isfinite(radius) and radius > 0.0):
+    if not (np.isfinite(length) and length > 0.0):
         raise InputError(
-            f"A cylinder from {start.tolist()} to {end.tolist()} of radius {radius} has no surface; "
-            "give it two different ends and a positive radius in the scene."
+            f"A cylinder from {start.tolist()} to {end.tolist()} has no surface; give it two different ends."
         )
-    axis = (end - start) / length
-    # any vector that is far from parallel to the axis spans the plane across it
-    u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    u /= np.linalg.norm(u)
-    v = np.cross(axis, u)
-    rim = _circle()
-    outward = rim[:, :1] * u + rim[:, 1:] * v
-    vertices = np.vstack([start + radius * outward, end + radius * outward])
-    here = np.arange(SIDES)
-    there = (here + 1) % SIDES
-    faces = np.vstack(
-        [np.column_stack([here, there, there + SIDES]), np.column_stack([there + SIDES, here + SIDES, here])]
-    )
-    return Triangles(_frozen(vertices), _frozen_faces(faces), _frozen(np.vstack([outward, outward])))
+    x, y, z = axis = (end - start) / length
+    sign = np.copysign(1.0, z)
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    placed = np.eye(4)
+    placed[:3, 0] = np.array([1.0 + sign * x * x * a, sign * b, -sign * x]) * radius
+    placed[:3, 1] = np.array([b, sign + y * y * a, -y]) * radius
+    placed[:3, 2] = axis * length
+    placed[:3, 3] = start
+    return placed
 
 
 def _icosahedron() -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -96,7 +96,7 @@ class Node:
         mi = mitsuba()
         value = self.take(name, default)
         if isinstance(value, mi.Properties.ResolvedReference):
-            raise self.refuse(f"has a texture as '{name}', which is not supported yet; give an <rgb>.")
+            raise self.refuse(f"has a texture or a volume as '{name}', where only an <rgb> or a <float> is supported.")
         # A parsed spectrum's class has no name in the module. As the emission of a light, Mitsuba takes a uniform one
         # for power per wavelength, and that is not white.
         if hasattr(value, "is_uniform") and value.is_uniform() and self.kind != "Emitter":
@@ -132,6 +132,14 @@ class Node:
         if not np.allclose(np.array(value.inverse_transpose) @ matrix.T, np.eye(4), atol=1e-4):
             raise self.refuse(f"has a '{name}' with a rotation about an axis that is not of unit length; normalise it.")
         return matrix
+
+    def nested(self, name: str) -> Node | None:
+        """Take the plugin that stands as this property, or None where it is a plain value or not there."""
+        import mitsuba as mi
+
+        if name not in self.unread or not isinstance(self.props[name], mi.Properties.ResolvedReference):
+            return None
+        return Node(self.state, self.take(name).index())
 
     def children(self, *kinds: str) -> list[Node]:
         """Take the nested plugins of the given kinds ("BSDF", "Film", ...), referenced ones included."""

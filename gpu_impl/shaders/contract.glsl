@@ -2,11 +2,13 @@
 //     visibility strategy  x  airlight model  x  lattice
 // and each part knows the others only through what stands here.
 
-// Begins on the near plane, as Mitsuba's rays do; t_max is the distance to the surface or to the far plane.
+// Begins on the near plane, as Mitsuba's rays do, or where it enters a bounded medium; t_max is the distance to the
+// surface, to the far plane or to where it leaves the medium. All of it lies in fog.
 struct Ray { vec3 o; vec3 d; float t_max; };
 
-// intensity [W/sr]; the angles are half-angles of a spot [rad], pi for a point light.
-struct Light { vec3 position; vec3 direction; vec3 intensity; float beam_width; float cutoff_angle; };
+// A point or spot light has an intensity [W/sr], and half-angles [rad] that are pi for a point light. A directional light
+// has an irradiance in place of the intensity, travels along `direction`, and its position is any point before the scene.
+struct Light { vec3 position; vec3 direction; vec3 intensity; float beam_width; float cutoff_angle; bool directional; };
 
 // The medium [1 / scene unit].
 uniform vec3 sigma_s;
@@ -17,12 +19,14 @@ uniform vec3 sigma_t;
 //                                  takes the intensity as constant or smooth; false: it samples the intensity itself
 //     vec3 airlight(Ray ray, Light light, float t0, float dt)
 // the radiance that reaches the eye from the lit piece [t0, t0 + dt], the eye leg's transmittance included.
-// dt is passed explicitly because float32 loses it in t1 - t0.
+// dt is passed explicitly because float32 loses it in t1 - t0. WHOLE_LEG is 1 where the light is a point in the fog,
+// so that all of its way to the piece is; otherwise the model asks light_leg() (fog.glsl), or takes no such scene.
 vec3 airlight(Ray ray, Light light, float t0, float dt);
-// A model that works on one extinction coefficient at a time runs once in grey fog, three times in coloured fog.
+// A model that works on one extinction coefficient at a time, and gives the colour that all channels would have with it,
+// runs once in grey fog, three times in coloured fog.
 #define PER_CHANNEL(f, ray, light, t0, dt) \
-    (GREY == 1 ? vec3(f(ray, light, t0, dt, sigma_t.x)) : vec3(f(ray, light, t0, dt, sigma_t.x), \
-     f(ray, light, t0, dt, sigma_t.y), f(ray, light, t0, dt, sigma_t.z)))
+    (GREY == 1 ? f(ray, light, t0, dt, sigma_t.x) : vec3(f(ray, light, t0, dt, sigma_t.x).x, \
+     f(ray, light, t0, dt, sigma_t.y).y, f(ray, light, t0, dt, sigma_t.z).z))
 
 // A STRATEGY defines
 //     void visibility(Ray ray, Light light)

@@ -1,17 +1,37 @@
 // What the eye sees first: normal and distance along the pixel's own ray, the material, and the triangle's own normal.
 #include "camera_ray.glsl"
-uniform vec4 material;   // reflectance, 1 if two-sided
+#include "bitmap.glsl"
+
+uniform vec4 diffuse;            // reflectance, 1 if two-sided
+uniform vec4 specular;           // reflectance, exponent
+uniform bool has_picture;        // in place of the diffuse reflectance
+uniform sampler2D picture;
+uniform Bitmap picture_bitmap;
+uniform int mapping;             // 0: coordinates are (u, v); 1, 2, 3: the place on a unit sphere, cylinder or disk
 in vec3 position;
 in vec3 normal;
+in vec3 coordinates;
 layout(location = 0) out vec4 normal_and_distance;
-layout(location = 1) out vec4 surface_material;
-layout(location = 2) out vec4 triangle_normal;
+layout(location = 1) out vec4 surface_diffuse;
+layout(location = 2) out vec4 surface_specular;
+layout(location = 3) out vec4 triangle_normal;
+
+// (u, v) as Mitsuba's shapes define them, taken from the place itself: no triangle has to bridge a seam or a pole.
+vec2 uv() {
+    if (mapping == 0) return coordinates.xy;
+    float around = atan(coordinates.y, coordinates.x) * 0.159154943091895;
+    if (around < 0.0) around += 1.0;
+    if (mapping == 1) return vec2(around, atan(length(coordinates.xy), coordinates.z) * 0.318309886183791);
+    return mapping == 2 ? vec2(around, coordinates.z) : vec2(length(coordinates.xy), around);
+}
+
 void main() {
     Ray ray = camera_ray(ivec2(gl_FragCoord.xy));
     // a file may hold a normal of length zero: its surface is black, as in Mitsuba
     float length2 = dot(normal, normal);
     normal_and_distance = vec4(length2 > 0.0 ? normal * inversesqrt(length2) : vec3(0.0), dot(position - ray.o, ray.d));
-    surface_material = material;
+    surface_diffuse = has_picture ? vec4(look_up(picture, picture_bitmap, uv()), diffuse.a) : diffuse;
+    surface_specular = specular;
     triangle_normal = vec4(cross(dFdx(position), dFdy(position)), 0.0);
     // The logarithm of the depth along the axis: resolved alike near and far, where z / w has most of its steps in front
     // of the near plane, and Mitsuba's default near plane is a hundredth.

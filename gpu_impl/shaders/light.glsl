@@ -1,5 +1,6 @@
 // A light as seen from one ray.
 #include "contract.glsl"
+#include "bitmap.glsl"
 
 // Where the ray passes the light: distance h, and t_h, the coordinate of the light's projection (Weng 2010, Fig. 4.6).
 struct Passage { float h; float t_h; };
@@ -13,7 +14,7 @@ Passage passage(Ray ray, Light light) {
     return Passage(h, dot(to_light, ray.d));
 }
 
-// Mitsuba's spot: linear in the angle between the beam's edge and the cutoff. 1 for a point light.
+// Mitsuba's spot: linear in the angle between the beam's edge and the cutoff. 1 for any other light.
 float falloff(Light light, vec3 point) {
     if (light.cutoff_angle > 1.5707) return 1.0;
     vec3 from_light = point - light.position;
@@ -24,7 +25,26 @@ float falloff(Light light, vec3 point) {
     return (light.cutoff_angle - angle) / (light.cutoff_angle - light.beam_width);
 }
 
-// The part of the ray inside a spot's cone, as (begin, end), empty where begin >= end; the whole ray for a point light.
+#if SPOT_TEXTURE == 1
+uniform sampler2D spot_texture;
+uniform Bitmap spot_bitmap;
+uniform mat4 world_to_light;
+#endif
+
+// What of the light's intensity goes towards a point: its falloff, and its picture's colour.
+vec3 angular(Light light, vec3 point) {
+    vec3 share = vec3(falloff(light, point));
+#if SPOT_TEXTURE == 1
+    vec3 local = (world_to_light * vec4(point, 1.0)).xyz;
+    // the picture fills the square around the cone
+    if (share.x > 0.0)
+        share *= look_up(spot_texture, spot_bitmap, 0.5 + 0.5 * local.xy / (local.z * tan(light.cutoff_angle)));
+#endif
+    return share;
+}
+
+// The part of the ray inside a spot's cone, as (begin, end), empty where begin >= end; the whole ray for any other
+// light.
 vec2 cone_interval(Ray ray, Light light) {
     vec2 whole = vec2(0.0, ray.t_max);
     if (light.cutoff_angle > 1.5707) return whole;

@@ -2,6 +2,7 @@
 // rgb: airlight L_m, the radiance that fog scatters to the eye; a: lit intervals that the strategy reported.
 #include "camera_ray.glsl"
 #include "light.glsl"
+#include "fog.glsl"
 #include "<airlight>"
 #include "<visibility>"
 
@@ -29,11 +30,18 @@ void main() {
     the_ray = camera_ray(pixel);
     float surface = texelFetch(normal_and_distance, pixel, 0).w;
     if (surface > 0.0) the_ray.t_max = surface;
+    // a ray begins in the fog and ends in it; what is before does not weaken it
+    vec2 fog = fog_interval(the_ray.o, the_ray.d, vec2(0.0, the_ray.t_max));
+    the_ray.o += fog.x * the_ray.d;
+    the_ray.t_max = fog.y - fog.x;
+    result = vec4(0.0);
+    if (the_ray.t_max <= 0.0) return;
+#if WHOLE_LEG == 1
     // Past the light both legs grow: 16 mean free paths behind its projection float32 has nothing left to add.
     float thinnest = min(sigma_t.x, min(sigma_t.y, sigma_t.z));
     float t_h = dot(light.position - the_ray.o, the_ray.d);
     the_ray.t_max = min(the_ray.t_max, max(t_h, 0.0) + 16.0 / max(thinnest, 1e-30));
+#endif
     the_cone = cone_interval(the_ray, light);
-    result = vec4(0.0);
     visibility(the_ray, light);
 }

@@ -1,10 +1,10 @@
-// The shadow map: distance from the light to the nearest surface, one texel per direction. A narrow spot has one tile; any
-// other light has the six faces of a cube side by side.
+// The shadow map: distance from the light to the nearest surface, one texel per direction. A narrow spot and
+// parallel light have one tile; any other light has the six faces of a cube side by side.
 #include "contract.glsl"
 
 uniform sampler2D shadow_map;
 uniform int tile_size;      // texels on a side
-uniform mat4 tile_matrix;   // world to clip space of a spot's tile
+uniform mat4 tile_matrix;   // world to clip space of the one tile
 
 // Where in the map a direction is looked up: position in its tile, -1 to 1, and the number of the tile (shadow_map.py).
 vec3 tile_position(vec3 from_light) {
@@ -14,7 +14,8 @@ vec3 tile_position(vec3 from_light) {
     return d.z > 0.0 ? vec3(-d.x / a.z, d.y / a.z, 4.0) : vec3(d.xy / a.z, 5.0);
 }
 
-// Distance to the nearest surface in the direction of `point`; without end outside a spot's map, where it sheds no light.
+// Distance to the nearest surface in the direction of `point`; without end outside a flat map: there a spot
+// sheds no light, and parallel light meets nothing.
 float nearest_surface(Light light, vec3 point) {
 #if TILES == 1
     vec4 clip = tile_matrix * vec4(point, 1.0);
@@ -27,4 +28,9 @@ float nearest_surface(Light light, vec3 point) {
     return texelFetch(shadow_map, texel + ivec2(int(position.z) * tile_size, 0), 0).r;
 }
 
-bool in_shadow(Light light, vec3 point) { return distance(point, light.position) > nearest_surface(light, point); }
+// What the map holds distances of.
+float distance_from(Light light, vec3 point) {
+    return light.directional ? dot(point - light.position, light.direction) : distance(point, light.position);
+}
+
+bool in_shadow(Light light, vec3 point) { return distance_from(light, point) > nearest_surface(light, point); }

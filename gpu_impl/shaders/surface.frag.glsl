@@ -1,32 +1,44 @@
-// "Render Scene" of Weng 2010, Fig. 1.3: direct light of one light on diffuse surfaces, attenuated on both legs.
+// "Render Scene" of Weng 2010, Fig. 1.3: direct light of one light on diffuse and Phong surfaces,
+// attenuated on both legs.
 #include "camera_ray.glsl"
 #include "light.glsl"
+#include "fog.glsl"
 #include "shadow_lookup.glsl"
 
 uniform Light light;
 uniform sampler2D normal_and_distance;
-uniform sampler2D surface_material;
+uniform sampler2D surface_diffuse;
+uniform sampler2D surface_specular;
 uniform sampler2D triangle_normal;
-uniform float texel_slope;   // width of a shadow-map texel at distance 1
+uniform float texel_slope;   // width of a shadow-map texel at distance 1, or anywhere in parallel light
 out vec4 result;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 surface = texelFetch(normal_and_distance, pixel, 0), material = texelFetch(surface_material, pixel, 0);
+    vec4 surface = texelFetch(normal_and_distance, pixel, 0), diffuse = texelFetch(surface_diffuse, pixel, 0);
     Ray ray = camera_ray(pixel);
-    vec3 point = ray.o + surface.w * ray.d, to_light = light.position - point;
-    float d = length(to_light);
-    float cos_eye = dot(surface.xyz, -ray.d), cos_light = dot(surface.xyz, to_light) / d;
+    vec3 point = ray.o + surface.w * ray.d;
+    float d = distance_from(light, point);
+    vec3 l = light.directional ? -light.direction : (light.position - point) / d;
+    float cos_eye = dot(surface.xyz, -ray.d), cos_light = dot(surface.xyz, l);
     result = vec4(0.0);
     if (surface.w == 0.0) return;
     // Mitsuba's diffuse: black unless eye and light are on the front side; twosided: on the same side
-    if (!(cos_eye * cos_light > 0.0) || (material.a == 0.0 && cos_eye < 0.0)) return;
+    if (!(cos_eye * cos_light > 0.0) || (diffuse.a == 0.0 && cos_eye < 0.0)) return;
     cos_light = abs(cos_light);
+    vec3 reflected = diffuse.rgb * 0.318309886183791;
+    vec4 specular = texelFetch(surface_specular, pixel, 0);
+    // Lafortune and Willems 1994: a lobe about the mirrored direction, normalised
+    float cos_mirror = dot(reflect(ray.d, surface.xyz), l);
+    if (cos_mirror > 0.0)
+        reflected += specular.rgb * (specular.a + 2.0) * 0.159154943091895 * pow(cos_mirror, specular.a);
     // A texel holds the distance at its centre; across it a slanted triangle varies by this much.
     vec3 flat_normal = texelFetch(triangle_normal, pixel, 0).xyz;
-    float slope = length(cross(flat_normal, to_light)) / max(abs(dot(flat_normal, to_light)), 1e-30);
-    float bias = texel_slope * d * min(slope, 20.0) + 1e-4 * d;
+    float slope = length(cross(flat_normal, l)) / max(abs(dot(flat_normal, l)), 1e-30);
+    float bias = texel_slope * (light.directional ? 1.0 : d) * min(slope, 20.0) + 1e-4 * d;
     if (d - bias > nearest_surface(light, point)) return;
-    result.rgb = material.rgb * 0.318309886183791 * cos_light * light.intensity * falloff(light, point) / (d * d)
-               * exp(-sigma_t * (surface.w + d));
+    vec2 eye_leg = fog_interval(ray.o, ray.d, vec2(0.0, surface.w));
+    float legs = eye_leg.y - eye_leg.x + light_leg(light, point);
+    result.rgb = reflected * cos_light * light.intensity * angular(light, point) / (light.directional ? 1.0 : d * d)
+               * exp(-sigma_t * legs);
 }

@@ -19,7 +19,7 @@ def test_a_shipped_suite_can_be_run(name: str) -> None:
     for scene in suite.scenes:
         loaded = load(scene, size=suite.size, **suite.parameters)
         for choice in suite.techniques:
-            choice.technique().check_phase(loaded.phase)
+            choice.technique().check_scene(loaded)
 
 
 def test_quick_is_the_main_job() -> None:

@@ -16,6 +16,7 @@ from gpu_impl.renderer import Renderer
 from gpu_impl.shader_source import ShaderSource, compile_program, set_uniforms
 from gpu_impl.shadow_map import render_shadow_map, tile_count
 from gpu_impl.techniques import TECHNIQUES, find_technique
+from gpu_impl.textures import PictureTextures
 from scenes.errors import InputError
 from scenes.loader import load
 
@@ -197,7 +198,7 @@ def test_shadow_map_finds_the_nearest_surface_in_every_direction(light: str, til
         }"""
     source = ShaderSource("<main>", {"TILES": tiles, "GREY": 1}, generated={"<main>": main})
     program = compile_program(device.context, ShaderSource("fullscreen.vert.glsl"), source)
-    set_uniforms(program, light_uniforms(scene, lamp) | shadow_map.bind(0) | {"points": 1})
+    set_uniforms(program, light_uniforms(scene, lamp, PictureTextures(device)) | shadow_map.bind(0) | {"points": 1})
     points.use(1)
     target = device.texture((side, side), 4)
     device.fill(program, target)

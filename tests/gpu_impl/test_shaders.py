@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from pathlib import Path
 
 import pytest
@@ -24,7 +23,7 @@ PASSES = [
     ("fullscreen.vert.glsl", "surface.frag.glsl"),
     ("fullscreen.vert.glsl", "upsample.frag.glsl"),
 ]
-RAY_AND_LIGHT = "Ray(vec3(0), vec3(0, 0, 1), 1.0), Light(vec3(1), vec3(0, 0, 1), vec3(1), 3.14, 3.14)"
+RAY_AND_LIGHT = "Ray(vec3(0), vec3(0, 0, 1), 1.0), Light(vec3(1), vec3(0, 0, 1), vec3(1), 3.14, 3.14, false)"
 # what the contract leaves to the other parts, and a call, so that the linker keeps what is tested
 STUBS = {
     "airlight": f"void main() {{ result = vec4(airlight({RAY_AND_LIGHT}, 0.0, 1.0), 0.0); }}",
@@ -35,10 +34,29 @@ STUBS = {
 }
 
 
+# what a pass defines for a cube map, coloured fog that fills space and a light without a picture
+PLAIN = {
+    "TILES": 6,
+    "GREY": 0,
+    "STEPS": 4,
+    "WHOLE_LEG": 1,
+    "FOG_PLANES": 0,
+    "FOG_BALL": 0,
+    "SPOT_TEXTURE": 0,
+}
+VARIANTS = [
+    PLAIN,
+    PLAIN | {"TILES": 1, "GREY": 1, "SPOT_TEXTURE": 1},
+    PLAIN | {"FOG_PLANES": 6, "WHOLE_LEG": 0},
+    PLAIN | {"TILES": 1, "FOG_BALL": 1, "WHOLE_LEG": 0},
+    PLAIN | {"GREY": 1, "FOG_PLANES": 64, "SPOT_TEXTURE": 1, "WHOLE_LEG": 0},
+]
+
+
 def assembled(main: str, **settings) -> ShaderSource:
     generated = {"<main>": main, **AIRLIGHT_MODELS["quadrature"].generated, **settings.pop("generated", {})}
     includes = {"<phase>": "phase/isotropic.glsl"}
-    return ShaderSource("<main>", settings.pop("defines", {"TILES": 6, "GREY": 0, "STEPS": 4}), includes, generated)
+    return ShaderSource("<main>", settings.pop("defines", PLAIN), includes, generated)
 
 
 def compiled(source: ShaderSource) -> None:
@@ -48,17 +66,20 @@ def compiled(source: ShaderSource) -> None:
 @pytest.mark.parametrize("name", INCLUDES)
 def test_an_include_compiles_on_its_own(name: str) -> None:
     folder = Path(name).parent.as_posix().removeprefix(".")
-    # the exponential integral is a part of a model, not a model
-    stub = STUBS[folder if name != "airlight/exponential_integral.glsl" else ""]
-    for tiles, grey in itertools.product((1, 6), (0, 1)):
-        main = f'out vec4 result;\n#include "{name}"\n{stub}\n'
-        compiled(assembled(main, defines={"TILES": tiles, "GREY": grey, "STEPS": 4}))
+    # parts of a model are not models
+    if name in ("airlight/exponential_integral.glsl", "airlight/part_of_the_leg.glsl"):
+        folder = ""
+    # a part of the quadrature asks for what comes before it there
+    before = '#include "<phase>"\n#include "<gauss-legendre>"\n' if name == "airlight/part_of_the_leg.glsl" else ""
+    for defines in VARIANTS:
+        main = f'out vec4 result;\n{before}#include "{name}"\n{STUBS[folder]}\n'
+        compiled(assembled(main, defines=defines))
 
 
 @pytest.mark.parametrize(("vertex", "fragment"), PASSES)
-@pytest.mark.parametrize("tiles", [1, 6])
-def test_a_pass_compiles(vertex: str, fragment: str, tiles: int) -> None:
-    source = ShaderSource(fragment, {"TILES": tiles, "GREY": 1})
+@pytest.mark.parametrize("defines", VARIANTS, ids=str)
+def test_a_pass_compiles(vertex: str, fragment: str, defines: dict[str, int]) -> None:
+    source = ShaderSource(fragment, defines)
     compile_program(shared_context(), ShaderSource(vertex), source).release()
 
 
@@ -75,10 +96,10 @@ def test_every_file_is_covered() -> None:
 @pytest.mark.parametrize("phase", PHASES)
 def test_every_combination_compiles(visibility: str, airlight: str, phase: str) -> None:
     device = Device(shared_context())
-    for tiles, grey in itertools.product((1, 6), (0, 1)):
+    for defines in VARIANTS:
         program = device.program(
             "scattering.frag.glsl",
-            defines={"TILES": tiles, "GREY": grey, "STEPS": 8},
+            defines=defines,
             includes={
                 "<airlight>": AIRLIGHT_MODELS[airlight].source,
                 "<visibility>": VISIBILITIES[visibility].source,

@@ -90,14 +90,17 @@ def test_light_that_reaches_the_fog_unattenuated_does_not_agree(isotropic: Estim
     assert not image_mean_test(main_estimate(sphere(), drop), isotropic).agrees
 
 
+SEES = "active & sees(scene, ds, margin, active)"
+
+
 @pytest.mark.parametrize(
     ("method", "right", "wrong"),
     [
-        ("scattering", "ray, t +", "ray,"),  # the eye's leg is not attenuated
-        ("scattering", "sees(scene, ds, FOG_MARGIN, active)", "(ds.dist > 0)"),  # no shadows in fog
-        ("scattering", "* inverse_pdf", "* (t_max - begin)"),  # as if distances were uniform
-        ("surface", "ray, si.t +", "ray,"),
-        ("surface", "sees(scene, ds, SURFACE_MARGIN, hit)", "(ds.dist > 0)"),  # no shadows on surfaces
+        ("scattering", "through_fog + leg", "leg"),  # the eye's leg is not attenuated
+        ("_leg", SEES, f"({SEES} if margin == SURFACE_MARGIN else mi.Bool(active))"),  # no shadows in fog
+        ("scattering", "* inverse_pdf", "* path.fog_length"),  # as if distances were uniform
+        ("surface", "path.fog_length + leg", "leg"),
+        ("_leg", SEES, f"({SEES} if margin == FOG_MARGIN else mi.Bool(active))"),  # no shadows on surfaces
         ("surface", "+= value", "+= value / dr.maximum(si.to_local(ds.d).z, 0.01)"),  # no cosine
     ],
 )

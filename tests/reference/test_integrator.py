@@ -239,7 +239,7 @@ def test_the_plugin_serves_plain_mitsuba() -> None:
 
 def test_a_light_with_an_extent_is_refused() -> None:
     lit_by = mi.load_dict({"type": "scene", "sky": {"type": "constant"}})
-    with pytest.raises(InputError, match="samples point and spot lights"):
+    with pytest.raises(InputError, match="samples point, spot and directional lights"):
         integrator.delta_emitters(lit_by)
     with pytest.raises(InputError, match="has no light"):
         integrator.delta_emitters(mi.load_dict({"type": "scene", "ball": {"type": "sphere"}}))

@@ -110,8 +110,8 @@ def test_medium_and_reflectance_are_mitsubas(tmp_path: Path) -> None:
     np.testing.assert_allclose(scene.medium.albedo, held["albedo.value.value"].ravel(), rtol=1e-6)
     assert scene.phase.mean_cosine == pytest.approx(held["phase_function.g"].item(), rel=1e-6)
     (reflectance,) = (value for key, value in held.items() if key.endswith("reflectance.value"))
-    np.testing.assert_allclose(scene.meshes[0].reflectance, reflectance.ravel(), rtol=1e-6)
-    assert scene.meshes[0].two_sided
+    np.testing.assert_allclose(scene.meshes[0].material.diffuse, reflectance.ravel(), rtol=1e-6)
+    assert scene.meshes[0].material.two_sided
 
 
 def test_what_a_scene_leaves_out_is_mitsubas_default(tmp_path: Path) -> None:
@@ -133,9 +133,9 @@ def test_what_a_scene_leaves_out_is_mitsubas_default(tmp_path: Path) -> None:
     assert np.degrees(light.beam_width) == pytest.approx(held["beam_width"].item())
     np.testing.assert_allclose(light.intensity, np.broadcast_to(held["intensity.value"].ravel(), 3))
     np.testing.assert_allclose(
-        scene.meshes[0].reflectance, np.full(3, held["bsdf.reflectance.value"].item()), rtol=1e-6
+        scene.meshes[0].material.diffuse, np.full(3, held["bsdf.reflectance.value"].item()), rtol=1e-6
     )
-    assert not scene.meshes[0].two_sided
+    assert not scene.meshes[0].material.two_sided
 
 
 @pytest.mark.parametrize("value", ["<float name='{}' value='0.3'/>", "<rgb name='{}' value='0.1, 0.2, 0.3'/>"])
@@ -193,7 +193,7 @@ def test_grey_reflectances_and_coefficients(tmp_path: Path, xml: str) -> None:
     path.write_text(path.read_text().replace('<float name="sigma_t" value="$sigma_t"/>', xml.format("sigma_t")))
     path.write_text(path.read_text().replace('<default name="sigma_t" value="0.1"/>', ""))
     scene, held = load(path), held_by_mitsuba(path)
-    np.testing.assert_allclose(scene.meshes[0].reflectance, 0.3)
+    np.testing.assert_allclose(scene.meshes[0].material.diffuse, 0.3)
     np.testing.assert_allclose(scene.medium.sigma_t, 0.3)
     assert held["bsdf.reflectance.value"].item() == pytest.approx(0.3)
     assert held["sigma_t.value.value"].item() == pytest.approx(0.3)

@@ -8,10 +8,11 @@
 #include "light.glsl"
 #include "<phase>"
 #include "<gauss-legendre>"
+#include "airlight/part_of_the_leg.glsl"
 
 const bool CLIP_TO_CONE = true;
 
-float channel(Ray ray, Light light, float t0, float dt, float extinction) {
+vec3 channel(Ray ray, Light light, float t0, float dt, float extinction) {
     Passage p = passage(ray, light);
     float H = extinction * p.h;
     float u_a = (t0 - p.t_h) / p.h, du = dt / p.h, u_b = u_a + du;
@@ -26,20 +27,21 @@ float channel(Ray ray, Light light, float t0, float dt, float extinction) {
     float X_a = 0.5 * (1.0 + s_a), X_b = 0.5 * (1.0 + s_b);
     float dY = 2.0 * dv / (q * (s_a + s_b)) / (X_a * X_b);
     float Y_a = 1.0 / X_a;
-    float sum = 0.0;
+    vec3 sum = vec3(0.0);
     for (int i = 0; i < NODES; ++i) {
         float X = 1.0 / (Y_a - dY * NODE[i]);
         float beyond = q * dY * NODE[i] * X * X_a * (X + X_a - 1.0);  // v - v_a
         float v = v_a + beyond, cos2 = 1.0 / (1.0 + v * v);
         float term = phase(vec2(cos2, v * v * cos2)) * exp(-H * beyond) * (2.0 * X - 1.0) * X * X * cos2;
-        // only a soft spot changes along the piece: a hard one is cut at its cone
-        if (light.beam_width < light.cutoff_angle)
-            term *= falloff(light, ray.o + ray.d * (p.t_h + 0.5 * p.h * (v - 1.0 / v)));
-        sum += WEIGHT[i] * term;
+        // a hard spot is cut at its cone, and is even inside it
+        bool even = light.beam_width >= light.cutoff_angle && SPOT_TEXTURE == 0;
+        vec3 share = even ? vec3(1.0) : angular(light, ray.o + ray.d * (p.t_h + 0.5 * p.h * (v - 1.0 / v)));
+        sum += WEIGHT[i] * term * share;
     }
     return 2.0 * q * dY * sum / p.h * exp(-extinction * (t0 + p.h * r_a));
 }
 
 vec3 airlight(Ray ray, Light light, float t0, float dt) {
-    return light.intensity * sigma_s * PER_CHANNEL(channel, ray, light, t0, dt);
+    vec3 seen = WHOLE_LEG == 1 ? PER_CHANNEL(channel, ray, light, t0, dt) : through_boundary(ray, light, t0, dt);
+    return light.intensity * sigma_s * seen;
 }

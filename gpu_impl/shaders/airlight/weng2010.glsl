@@ -16,18 +16,18 @@ float antiderivative(float H, float u, float r) {
     return -scaled_e1(max(H, 1e-7) * vec2(v, 1.0)).y;
 }
 
-float channel(Ray ray, Light light, float t0, float dt, float extinction) {
+vec3 channel(Ray ray, Light light, float t0, float dt, float extinction) {
     Passage p = passage(ray, light);
     float H = extinction * p.h;
     float u_a = (t0 - p.t_h) / p.h, u_b = u_a + dt / p.h;
     float r_a = sqrt(1.0 + u_a * u_a), r_b = sqrt(1.0 + u_b * u_b);
     float at_a = exp(-extinction * (t0 + p.h * r_a)) * antiderivative(H, u_a, r_a);
     float at_b = exp(-extinction * (t0 + dt + p.h * r_b)) * antiderivative(H, u_b, r_b);
-    return 0.159154943091895 / p.h * (at_a - at_b);
+    return vec3(0.159154943091895 / p.h * (at_a - at_b));
 }
 
 vec3 airlight(Ray ray, Light light, float t0, float dt) {
     // the closed form takes the intensity as constant over the piece: exact for a hard cone
-    float angular = falloff(light, ray.o + (t0 + 0.5 * dt) * ray.d);
-    return light.intensity * angular * sigma_s * PER_CHANNEL(channel, ray, light, t0, dt);
+    vec3 share = angular(light, ray.o + (t0 + 0.5 * dt) * ray.d);
+    return light.intensity * share * sigma_s * PER_CHANNEL(channel, ray, light, t0, dt);
 }
