@@ -8,63 +8,24 @@ import sys
 import mpmath
 import numpy as np
 import pytest
+from exact_airlight import (
+    cornette_shanks,
+    henyey_greenstein,
+    isotropic,
+    oracle,
+    rayleigh,
+    relative_error,
+    schlick,
+    tabulated,
+)
 
 from analytic import MODELS, Medium, airlight, phase, transmittance
 
 ISOTROPIC = phase("isotropic")
 FOG = Medium(0.15, 0.2)
-
-
-def isotropic(cosine):
-    return 1 / (4 * mpmath.pi)
-
-
-def rayleigh(cosine):
-    return 3 / (16 * mpmath.pi) * (1 + cosine**2)
-
-
-def henyey_greenstein(g):
-    g = mpmath.mpf(g)
-    return lambda cosine: (1 - g**2) / (4 * mpmath.pi * (1 + g**2 - 2 * g * cosine) ** mpmath.mpf("1.5"))
-
-
-DEPTHS = (1, 2, 4, 8, 16, 32, 64, 128)
-
-
-def oracle(h, x_a, x_b, sigma_t, function):
-    """L / (I sigma_s): Eq. 16 of the thesis with x = h sinh(s), piece by piece, at 30 digits.
-
-    Pieces of at most 1 in s, and shorter where the optical depth from the eye grows; what lies behind an optical depth
-    of 128 is below the 50th digit. An infinite end is e^200 times as far as the eye.
-    """
-    with mpmath.workdps(30):
-        h, x_a, sigma_t = mpmath.mpf(h), mpmath.mpf(x_a), mpmath.mpf(sigma_t)
-
-        def integrand(s):
-            x, d = h * mpmath.sinh(s), h * mpmath.cosh(s)
-            return mpmath.exp(-sigma_t * (x - x_a + d)) / d * function(-x / d)
-
-        first = mpmath.asinh(x_a / h)
-        last = first + 200 if np.isinf(x_b) else mpmath.asinh(mpmath.mpf(x_b) / h)
-        breaks = [first, last]
-        if sigma_t > 0:
-            depths = [mpmath.log(mpmath.exp(first) + t / (sigma_t * h)) for t in DEPTHS]
-            last = min(last, depths[-1])
-            breaks = [first, last, *(s for s in depths if s < last)]
-        k = mpmath.floor(first) + 1
-        while k < last:
-            breaks.append(k)
-            k += 1
-        # mpmath stops at an absolute error
-        scale = max(integrand(s) for s in breaks)
-        value, error = mpmath.quad(lambda s: integrand(s) / scale, sorted(breaks), error=True)
-        assert error < 1e-15 * value
-        return value * scale
-
-
-def relative_error(value, truth):
-    return abs(float((mpmath.mpf(float(value)) - truth) / truth))
-
+# tables, the forward value last: a few values, and a peak that 181 of them resolve
+FIVE = (0.5, 1.0, 1.5, 2.0, 5.0)
+FINE = tuple(phase("hg", g=0.9).evaluate(np.linspace(-1, 1, 181)).tolist())
 
 HARD = [  # h, x_a, x_b, sigma_t
     (1.0, -2.0, 3.0, 0.2),  # an ordinary segment around the light's projection
@@ -86,6 +47,10 @@ PHASES = [
     pytest.param(phase("rayleigh"), rayleigh, id="rayleigh"),
     pytest.param(phase("hg", g=0.95), henyey_greenstein(0.95), id="hg 0.95"),
     pytest.param(phase("hg", g=-0.8), henyey_greenstein(-0.8), id="hg -0.8"),
+    pytest.param(phase("schlick", k=0.9), schlick(0.9), id="schlick 0.9"),
+    pytest.param(phase("schlick", k=-0.6), schlick(-0.6), id="schlick -0.6"),
+    pytest.param(phase("cornette_shanks", g=0.9), cornette_shanks(0.9), id="cornette_shanks 0.9"),
+    pytest.param(phase("tabulated", values=FIVE), tabulated(FIVE), id="tabulated 5"),
 ]
 
 
@@ -95,6 +60,26 @@ def test_quadrature_on_the_hard_corners(function, exact):
         value = airlight(h, x_a, x_b, Medium(sigma_t, sigma_t), function, intensity=1 / sigma_t)
         # measured: 3e-14 at worst
         assert relative_error(value, oracle(h, x_a, x_b, sigma_t, exact)) < 1e-12, (h, x_a, x_b, sigma_t)
+
+
+def test_quadrature_of_a_fine_table():
+    # the oracle stops at every one of the 179 kinks, which takes its time
+    exact = tabulated(FINE)
+    for h, x_a, x_b, sigma_t in (HARD[0], HARD[6], HARD[9]):
+        value = airlight(h, x_a, x_b, Medium(sigma_t, sigma_t), phase("tabulated", values=FINE), intensity=1 / sigma_t)
+        assert relative_error(value, oracle(h, x_a, x_b, sigma_t, exact)) < 1e-12, (h, x_a, x_b, sigma_t)
+
+
+def test_segments_with_and_without_kinks_keep_apart():
+    # many segments at once are cut into different numbers of pieces, and give what each gives by itself
+    random = np.random.default_rng(5)
+    h, x_a = 10 ** random.uniform(-2, 1, 300), random.uniform(-9, 3, 300)
+    x_b = x_a + 10 ** random.uniform(-3, 2, 300)
+    table = phase("tabulated", values=FINE)
+    alone = [float(airlight(*segment, FOG, table)) for segment in zip(h, x_a, x_b, strict=True)]
+    np.testing.assert_allclose(airlight(h, x_a, x_b, FOG, table), alone, rtol=1e-13)
+    halves = airlight(h, x_a, 0.5 * (x_a + x_b), FOG, table)
+    assert np.all(halves < alone)
 
 
 def test_quadrature_on_drawn_segments():

@@ -1,0 +1,1 @@
+"""Phase functions, one file each; `analytic.phase` names them."""

@@ -1,0 +1,18 @@
+// A table at equally spaced cos(theta), the last value the forward one; linear in between, normalised [1/sr].
+layout(std430, binding = 3) readonly buffer PhaseTable { float phase_table[]; };
+
+float phase(vec2 half_angle) {
+    int last = phase_table.length() - 1;
+    // (1 + cos(theta)) / 2 = cos^2(theta/2). Counted from the nearer end, so that a steep peak is met without rounding
+    bool forward = half_angle.y < half_angle.x;
+    float position = (forward ? half_angle.y : half_angle.x) * float(last);
+    int i = min(int(position), last - 1);
+    float near = phase_table[forward ? last - i : i], far = phase_table[forward ? last - i - 1 : i + 1];
+    return mix(near, far, position - float(i));
+}
+
+// As hg's with the same forward peak: there (1 - g) / (1 + g) = (4 pi p(1) (1 + g))^(-1/2), of which the fourth root
+// of 1 + g is left out. A quadrature whose nodes do not stop at the kinks stays inexact, whatever the scale.
+float phase_scale() {
+    return min(1.0, inversesqrt(sqrt(12.5663706143592 * max(phase_table[phase_table.length() - 1], 1e-20))));
+}
