@@ -105,6 +105,11 @@ def _sha256(path: str, size: int, modified: int) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
+def user_folder() -> Path:
+    """The user's own folder of meshes, into which `airlight meshes fetch` puts them; it need not exist."""
+    return platformdirs.user_data_path("airlight") / "meshes"
+
+
 def _folders() -> list[tuple[Path, Origin]]:
     """Folders that are searched by bare name, in order. Those of the variable must exist; the user's own need not."""
     folders: list[tuple[Path, Origin]] = []
@@ -112,7 +117,7 @@ def _folders() -> list[tuple[Path, Origin]]:
         if not os.path.isdir(part):
             raise InputError(f"{VARIABLE} names the folder {part}, which does not exist; correct it or unset it.")
         folders.append((Path(part).absolute(), "mesh folder"))
-    return [*folders, (platformdirs.user_data_path("airlight") / "meshes", "user data")]
+    return [*folders, (user_folder(), "user data")]
 
 
 def _find_by_name(name: str) -> MeshFile | None:

@@ -1,0 +1,121 @@
+"""`airlight meshes`: the list says what there is, fetch shows terms, steps and path, and refuses in one sentence."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from mesh_server import serving, tar, whole
+
+from experiments.meshes_cli import meshes_app
+from scenes import mesh_catalogue
+from scenes.errors import InputError
+from scenes.mesh_catalogue import MESHES, KnownMesh, Original
+from scenes.mesh_files import VARIABLE
+from scenes.mesh_steps import Step
+from scenes.procedural import RECIPES
+from scenes.triangles import Triangles, ply_bytes
+
+BALL = trimesh.creation.icosphere(subdivisions=2)
+BALL_PLY = ply_bytes(Triangles(np.asarray(BALL.vertices, np.float32), np.asarray(BALL.faces[:-3], np.uint32)))
+Run = Callable[..., str]
+
+
+@pytest.fixture
+def meshes(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Run:
+    """Run `airlight meshes ...` in this process, with empty folders of the user's; what it printed."""
+    for variable in ("XDG_DATA_HOME", "XDG_CACHE_HOME"):
+        monkeypatch.setenv(variable, str(tmp_path / variable))
+    monkeypatch.setenv("NO_PROXY", "127.0.0.1")
+    monkeypatch.delenv(VARIABLE, raising=False)
+
+    def run(*words: str) -> str:
+        meshes_app(list(words), standalone_mode=False)
+        return capsys.readouterr().out
+
+    return run
+
+
+def listed(meshes: Run) -> dict[str, dict]:
+    return {row["name"]: row for row in json.loads(meshes("list", "--json"))}
+
+
+def test_the_list_has_every_mesh_and_says_where_it_is_from(
+    meshes: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = listed(meshes)
+    assert set(rows) == set(MESHES) | set(RECIPES)
+    teapot, torus = rows["teapot.ply"], rows["torus.ply"]
+    assert (teapot["from"], teapot["reference_copy"], teapot["licence"]) == ("stand-in", False, "not stated")
+    assert "by hand" in teapot["get"]
+    assert (torus["from"], torus["reference_copy"], torus["licence"]) == ("generated", True, "BSD-3-Clause")
+    assert rows["dragon_97k_fixed.ply"]["get"] == "airlight meshes fetch dragon_97k_fixed.ply"
+
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    (folder / "spot.ply").write_bytes(BALL_PLY)
+    (folder / "own.ply").write_bytes(BALL_PLY)
+    monkeypatch.setenv(VARIABLE, str(folder))
+    rows = listed(meshes)
+    assert (rows["spot.ply"]["from"], rows["spot.ply"]["reference_copy"]) == ("mesh folder", False)
+    assert rows["own.ply"]["licence"] is None
+    real = hashlib.sha256(BALL_PLY).hexdigest()
+    monkeypatch.setitem(mesh_catalogue.MESHES, "spot.ply", KnownMesh("a cow", "C", "L", "o", "http://p", real))
+    spot = listed(meshes)["spot.ply"]
+    assert (spot["reference_copy"], spot["sha256"], spot["path"]) == (True, real, str(folder / "spot.ply"))
+
+
+def test_the_table_shows_each_name_and_licence(meshes: Run) -> None:
+    text = meshes("list")
+    for name in [*MESHES, "torus.ply", "CC BY 3.0", "airlight meshes fetch"]:
+        assert name in text
+    assert VARIABLE in text
+
+
+def test_fetch_shows_terms_steps_and_path_and_the_list_then_knows(meshes: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    with serving() as server:
+        server.answers["/ball.tar.gz"] = whole(tar({"recon/ball.ply": BALL_PLY}))
+        original = Original(f"{server.address}/ball.tar.gz", "ball.ply", hashlib.sha256(BALL_PLY).hexdigest())
+        ball = KnownMesh("a ball", "Somebody", "for research", "o", "http://p", "0" * 64, original, (Step("repair"),))
+        monkeypatch.setattr(mesh_catalogue, "MESHES", {"ball.ply": ball})
+        text = meshes("fetch", "--all")
+        assert text.startswith("ball.ply: a ball. Credit: Somebody. Licence: for research.\n")
+        assert "ball.ply: repair()\n" in text
+        row = listed(meshes)["ball.ply"]
+        assert f"{row['path']}: ball.ply, repair -> {len(BALL.faces)} polygons" in text
+        assert (row["from"], row["steps"][0]["step"], row["licence"]) == ("user data", "repair", "for research")
+        assert "was there already" in meshes("fetch", "ball.ply")
+        assert server.asked == ["/ball.tar.gz"]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ((), "Name the meshes"),
+        (("--all", "spot.ply"), "Name the meshes"),
+        (("spot.ply",), "Keenan Crane's model repository"),
+        (("dragon.ply",), "is no mesh that can be fetched"),
+    ],
+)
+def test_what_cannot_be_fetched_is_refused_in_one_sentence(
+    meshes: Run, words: tuple[str, ...], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(InputError, match=sentence):
+        meshes("fetch", *words)
+    assert capsys.readouterr().out == ""
+
+
+def test_the_commands_load_nothing_heavy_until_they_run() -> None:
+    code = (
+        "import sys, experiments.meshes_cli; "
+        "print([m for m in ('numpy', 'rich', 'pooch', 'requests', 'fast_simplification') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
