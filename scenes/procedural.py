@@ -1,4 +1,4 @@
-"""Meshes that our code makes, the same bytes on every machine: the torus, and stand-ins for meshes we cannot ship."""
+"""Meshes that our code makes, the same bytes on every machine: a torus, a wire mesh, stand-ins for others' meshes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scenes import dragon, standins
+from scenes import dragon, standins, wire_mesh
 from scenes.triangles import Triangles
 
 
@@ -65,6 +65,12 @@ RECIPES: dict[str, Recipe] = {
         torus,
         "2fdb62ba8f1dc0886288bf6fb8691e35cecd1e7e48b60e26fb4c8af0942b0686",
         147456,
+        stands_in=False,
+    ),
+    "wire_mesh.ply": Recipe(
+        wire_mesh.wire_mesh,
+        "dc5cc3e57f0ee77d407eaf5b69dd3717c8b1eb477a4c378f338d66e436b491a0",
+        139330,
         stands_in=False,
     ),
     "dragon_97k_fixed.ply": Recipe(

@@ -1,0 +1,89 @@
+"""Writes scenes/manifest.toml: the versions of the shipped scenes, and the hashes by which they are known again.
+
+    AIRLIGHT_MESH_DIR=folder/of/the/meshes .venv/bin/python scripts/freeze_scenes.py
+
+A scene of which anything differs from what the manifest has (its file, a mesh, a phase function) gets the next
+number.
+Without AIRLIGHT_MESH_DIR the meshes that are not of our making keep the hashes they have.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from scenes import InputError, load
+from scenes.catalogue import FOLDER, shipped
+from scenes.manifest import PATH, FrozenMesh, Manifest, manifest, text_sha256
+from scenes.mesh_files import sha256
+from scenes.procedural import RECIPES
+from scenes.replacing import replacing
+
+
+def main() -> None:
+    """Freeze the scenes as they are."""
+    old = manifest() if PATH.is_file() else Manifest({}, {}, {})
+    try:
+        new = freeze(old)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        raise SystemExit(2) from None
+    with replacing(PATH) as beside:
+        beside.write_text(to_toml(new), encoding="utf-8")
+    for name, number in new.versions.items():
+        print(f"{name} {number}{'' if number == old.versions.get(name) else ' (new)'}")
+
+
+def freeze(old: Manifest) -> Manifest:
+    """The manifest of the scenes as they are, numbered on from `old`.
+
+    Raises
+    ------
+    InputError
+        A scene cannot be loaded, or a mesh that it means was never seen.
+    """
+    texts = sorted([*FOLDER.glob("*.xml"), *FOLDER.glob("phase/*.xml")])
+    files = {path.relative_to(FOLDER).as_posix(): text_sha256(path) for path in texts}
+    shared = any(files.get(name) != known for name, known in old.files.items() if "/" in name)
+    versions: dict[str, int] = {}
+    meshes: dict[str, FrozenMesh] = {}
+    for name in shipped():
+        used = {mesh.file.name: mesh.file.path for mesh in load(name).meshes if mesh.file}
+        here = {mesh: _frozen(mesh, path, old) for mesh, path in used.items()}
+        same = (
+            not shared
+            and files[f"{name}.xml"] == old.files.get(f"{name}.xml")
+            and all(old.meshes.get(mesh) == frozen for mesh, frozen in here.items())
+        )
+        versions[name] = old.versions.get(name, 0) + (not same)
+        meshes |= here
+    return Manifest(versions, files, dict(sorted(meshes.items())))
+
+
+def _frozen(name: str, path: Path, old: Manifest) -> FrozenMesh:
+    recipe = RECIPES.get(name)
+    ours = recipe.sha256 if recipe else None
+    if recipe and not recipe.stands_in:
+        return FrozenMesh(ours=ours)
+    found = sha256(path)
+    reference = found if found != ours else old.meshes.get(name, FrozenMesh()).reference
+    if reference is None:
+        raise InputError(f"The mesh '{name}' is here only as a stand-in; set AIRLIGHT_MESH_DIR to the folder it is in.")
+    return FrozenMesh(reference, ours)
+
+
+def to_toml(frozen: Manifest) -> str:
+    """The manifest as text."""
+    lines = ["# Frozen scenes; written by scripts/freeze_scenes.py, read by scenes/manifest.py.", "", "[versions]"]
+    lines += [f"{name} = {number}" for name, number in frozen.versions.items()]
+    lines += ["", "# SHA-256 of the text", "[files]"]
+    lines += [f'"{name}" = "{found}"' for name, found in frozen.files.items()]
+    lines += ["", "# SHA-256 of the bytes of the mesh that is meant, and of the one that our code makes"]
+    for name, mesh in frozen.meshes.items():
+        lines += ["", f'[meshes."{name}"]']
+        lines += [f'{key} = "{value}"' for key in ("reference", "ours") if (value := getattr(mesh, key))]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    main()
