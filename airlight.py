@@ -4,67 +4,210 @@
 >>> scene = airlight.load("sphere", size=(64, 64))
 >>> frame = airlight.render(scene, "Weng2010")
 >>> truth = airlight.reference(scene, rel_error=0.02)
->>> airlight.compare(frame.scattering, truth.scattering).rel_50 < 0.05
+>>> airlight.compare(frame, truth, layer="scattering").rel_50 < 0.05
 True
+>>> frame.layers["scattering"].shape
+(64, 64, 3)
+
+Frames, references and the files of `save` call their arrays alike: `composite`, `scattering`, `surface`, and beside
+them a frame's `depth` and `lit_intervals`, or a reference's `standard_error.composite`, `.scattering` and `.surface`.
+All are linear Rec.709 with row 0 at the top.
 
 Import it before `drjit` or `mitsuba`: it chooses an LLVM library that Dr.Jit works with.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from scenes.errors import InputError
 
 if TYPE_CHECKING:
+    from experiments.compare import Layered
     from experiments.metrics import Image, Metrics
+    from experiments.pictures import Picture
     from gpu_impl.frame import Frame
+    from gpu_impl.techniques import Technique
+    from reference.convergence import Progress
     from reference.estimate import Reference
     from scenes.model import Scene
 
-__all__ = ["InputError", "compare", "load", "reference", "render"]
+__all__ = ["InputError", "compare", "load", "milliseconds", "read", "reference", "render", "save"]
 
 
-def load(scene: str | Path, size: tuple[int, int] | None = None, **parameters: object) -> Scene:
-    """Load a scene: a shipped one by name or any Mitsuba XML file; see `scenes.loader.load`."""
+def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters: object) -> Scene:
+    """Load a scene.
+
+    Parameters
+    ----------
+    scene : name of a shipped scene, or path of any Mitsuba XML file
+    size : (width, height) [pixel]; the film's own by default
+    parameters : values for the file's `$name` parameters, such as sigma_t=0.2
+
+    Raises
+    ------
+    InputError
+        The file is missing, is not a scene, or holds something outside the supported subset.
+    """
     from scenes.loader import load as load_scene
 
     return load_scene(scene, size, **parameters)
 
 
-def render(scene: Scene, technique: str = "Weng2010", **settings: int) -> Frame:
+def render(scene: Scene, technique: str = "Weng2010", **settings: Any) -> Frame:
     """Draw a scene with an OpenGL technique.
 
     Parameters
     ----------
-    technique : a name, or a cell such as "lit_intervals+quadrature"
-    settings : `steps`, `shadow_map`, `downsample`
+    technique : a name, or a cell of the product such as "lit_intervals+quadrature"
+    settings : those of `gpu_impl.techniques.Technique`, such as steps=256; the technique's own by default
+
+    Returns
+    -------
+    Frame
+        Its arrays by name are `layers`; `scattering`, `surface`, `composite` (H, W, 3), `depth` [scene unit] and
+        `lit_intervals` (H, W) are attributes too; float32.
+
+    Raises
+    ------
+    InputError
+        There is no such technique or setting, it cannot take this scene, or there is no OpenGL.
     """
     from gpu_impl.renderer import Renderer
-    from gpu_impl.techniques import find_technique
 
-    chosen = find_technique(technique, **settings)
+    chosen = _technique(technique, settings)
     with Renderer(scene) as renderer:
         return renderer.render(chosen)
 
 
-def reference(scene: Scene, rel_error: float = 0.005, time_limit: float = 600.0) -> Reference:
+def milliseconds(scene: Scene, technique: str = "Weng2010", **settings: Any) -> float:
+    """Median time of a frame [ms]: wall clock, all passes up to glFinish, nothing kept from the frame before.
+
+    Parameters and what is raised: see `render`.
+    """
+    from gpu_impl.renderer import Renderer
+
+    chosen = _technique(technique, settings)
+    with Renderer(scene) as renderer:
+        # the first frame compiles and allocates
+        renderer.render(chosen)
+        return renderer.milliseconds(chosen)
+
+
+def reference(
+    scene: Scene,
+    rel_error: float = 0.005,
+    time_limit: float = 600.0,
+    report: Callable[[Progress], None] | None = None,
+) -> Reference:
     """Estimate a scene's reference in Mitsuba, or take it from the cache.
 
     Parameters
     ----------
-    rel_error : standard error to reach, relative to the pixel, at the 95th percentile
-    time_limit : [s]
+    rel_error : standard error to reach, relative to the pixel, at the 95th percentile of lit pixels
+    time_limit : [s]; where it is reached first, the reference says how far it got
+    report : called after each pass, for a progress bar
+
+    Returns
+    -------
+    Reference
+        Its arrays by name are `layers`; `scattering`, `surface`, `composite` are attributes and `standard_error(layer)`
+        a method; (H, W, 3) float64.
+
+    Raises
+    ------
+    InputError
+        The goal cannot be meant, the estimate is zero everywhere or not finite, or the cache cannot be written.
     """
     from reference.estimate import estimate_reference
     from reference.goal import Goal
 
-    return estimate_reference(scene, Goal(rel_error, time_limit))
+    return estimate_reference(scene, Goal(rel_error, time_limit), report)
 
 
-def compare(test: Image, truth: Image, standard_error: Image | None = None) -> Metrics:
-    """Measure how far a picture, (H, W, 3), is from its reference; see `experiments.metrics.measure`."""
-    from experiments.metrics import measure
+def compare(
+    test: Image | Layered,
+    truth: Image | Layered,
+    standard_error: Image | None = None,
+    layer: str | None = None,
+    sheet: str | Path | None = None,
+) -> Metrics:
+    """Measure how far a picture is from its reference, and draw the two with their errors where asked to.
 
-    return measure(test, truth, standard_error)
+    Parameters
+    ----------
+    test, truth : what `render`, `reference` or `read` returned, or arrays (H, W, 3)
+    standard_error : (H, W, 3)    of the reference, which the bias is corrected by; a `Reference` brings its own
+    layer : which one of results: "composite", the default, "scattering" or "surface"
+    sheet : a PNG file to write
+
+    Returns
+    -------
+    Metrics
+        Relative errors as fractions; see `experiments.metrics.Metrics`.
+
+    Raises
+    ------
+    InputError
+        The sizes differ, a layer is missing, values are not finite, or the sheet cannot be written.
+    """
+    from experiments.compare import compare as compare_results
+
+    return compare_results(test, truth, standard_error, layer, Path(sheet) if sheet else None)
+
+
+def save(path: str | Path, scene: Scene, result: Frame | Reference, truth: Reference | None = None) -> None:
+    """Write a frame, a reference, or a frame beside its reference, with their errors, as one layered float32 EXR.
+
+    Its metadata say what made it: `airlight render --again` draws a frame anew from them.
+
+    Parameters
+    ----------
+    scene : the scene that was drawn
+    truth : the reference beside a frame
+
+    Raises
+    ------
+    InputError
+        The file cannot be written, or is not called .exr.
+    """
+    from experiments.exr import check_writable
+    from experiments.pictures import write_case, write_frame, write_reference
+    from gpu_impl.frame import Frame
+
+    check_writable(Path(path), ".exr")
+    if not isinstance(result, Frame):
+        write_reference(Path(path), scene, result)
+    elif truth is None:
+        write_frame(Path(path), scene, result)
+    else:
+        write_case(Path(path), scene, result, truth)
+
+
+def read(path: str | Path) -> Picture:
+    """Read an EXR file of any program: its `layers` by name, float32, and its `metadata`.
+
+    Raises
+    ------
+    InputError
+        The file is missing or is not an EXR.
+    """
+    from experiments.pictures import read_picture
+
+    return read_picture(path)
+
+
+def _technique(name: str, settings: dict[str, Any]) -> Technique:
+    """Look a technique up, with settings that it has."""
+    from dataclasses import MISSING, fields
+
+    from gpu_impl.techniques import Technique, find_technique
+
+    # what has no default is which technique it is
+    known = [field.name for field in fields(Technique) if field.default is not MISSING]
+    for setting in settings:
+        if setting not in known:
+            raise InputError(f"There is no setting '{setting}'; a technique has {', '.join(known)}.")
+    return find_technique(name, **settings)

@@ -8,6 +8,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from experiments.meshes_cli import meshes_app
+from experiments.options import (
+    SCENE_HELP,
+    Parameters,
+    RelError,
+    SceneArgument,
+    Size,
+    TimeLimit,
+    given_beside,
+    parse_parameters,
+)
 from reference.goal import Goal
 from scenes.errors import InputError
 
@@ -28,27 +39,7 @@ app = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-SceneArgument = Annotated[
-    str, typer.Argument(metavar="SCENE", help="A shipped scene's name or the path of a Mitsuba XML file.")
-]
-Parameters = Annotated[
-    list[str] | None,
-    typer.Option("--parameter", "-p", metavar="NAME=VALUE", help="A $parameter of the scene; repeatable."),
-]
-Size = Annotated[
-    tuple[int, int] | None,
-    typer.Option("--size", metavar="W H", help="Image size in pixels; by default the scene's own."),
-]
-RelError = Annotated[
-    float,
-    typer.Option(
-        help="Relative standard error to reach, at the 95th percentile of lit pixels of the scattering layer."
-    ),
-]
-TimeLimit = Annotated[
-    float, typer.Option(help="Seconds after which the reference stops where it is; 8 passes are always made.")
-]
+app.add_typer(meshes_app)
 
 
 def main() -> None:
@@ -91,8 +82,9 @@ def list_() -> None:
 
 @app.command()
 def render(
-    scene: SceneArgument,
-    out: Annotated[Path, typer.Option(help="The EXR file to write.")],
+    context: typer.Context,
+    scene: Annotated[str | None, typer.Argument(metavar="SCENE", help=SCENE_HELP)] = None,
+    out: Annotated[Path | None, typer.Option(help="The EXR file to write; F-again.exr beside --again F.exr.")] = None,
     technique: Annotated[
         str, typer.Option(help="A technique, or a cell such as lit_intervals+quadrature.")
     ] = "Weng2010",
@@ -101,31 +93,62 @@ def render(
     steps: Annotated[int | None, typer.Option(help="Samples of the visibility along a ray.")] = None,
     shadow_map: Annotated[int | None, typer.Option(help="Texels on a side of the shadow map.")] = None,
     downsample: Annotated[int | None, typer.Option(help="Evaluate fog on every N-th pixel: 1, 2, 4 or 8.")] = None,
+    again: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="F.exr",
+            help="Draw what this file holds again, as its metadata say, and compare; SCENE only where that has moved.",
+        ),
+    ] = None,
 ) -> None:
     """Draw a scene with an OpenGL technique and write a layered EXR.
 
     Example: airlight render donut_dragon --technique Weng2010 --size 512 512 --out dragon.exr
+
+    With --again it exits with 1 where the same program on the same renderer draws other pixels.
     """
+    if again:
+        if given := given_beside(context, ("scene", "out", "again")):
+            raise InputError(f"--again takes everything from {again}; leave {' and '.join(given)} out.")
+        _render_again(again, scene, out)
+        return
+    if scene is None or out is None:
+        raise InputError("render needs a SCENE and --out, or --again with a file that it wrote.")
+    import airlight
     from experiments.console import say
     from experiments.exr import check_writable
-    from experiments.pictures import write_frame
     from experiments.terminal import announce_scene
-    from gpu_impl.renderer import Renderer
-    from gpu_impl.techniques import find_technique
-    from scenes.loader import load
 
-    chosen = find_technique(technique, steps=steps, shadow_map=shadow_map, downsample=downsample)
+    settings = {"steps": steps, "shadow_map": shadow_map, "downsample": downsample}
     check_writable(out, ".exr")
-    loaded = load(scene, size=size, **_parameters(parameter))
+    loaded = airlight.load(scene, size, **parse_parameters(parameter))
     announce_scene(loaded)
-    with Renderer(loaded) as renderer:
-        frame = renderer.render(chosen)
-        milliseconds = renderer.milliseconds(chosen)
-    write_frame(out, loaded, frame)
+    frame = airlight.render(loaded, technique, **settings)
+    milliseconds = airlight.milliseconds(loaded, technique, **settings)
+    airlight.save(out, loaded, frame)
     say(
-        f"{out}: {loaded.name}, {chosen.name}, {milliseconds:.1f} ms a frame on {frame.gl.renderer} (median of 5, wall "
-        "clock around glFinish)"
+        f"{out}: {loaded.name}, {frame.technique.name}, {milliseconds:.1f} ms a frame on {frame.gl.renderer} (median "
+        "of 5, wall clock around glFinish)"
     )
+
+
+def _render_again(again: Path, scene: str | None, out: Path | None) -> None:
+    import airlight
+    from experiments.again import draw_again
+    from experiments.console import say
+    from experiments.exr import check_writable
+    from experiments.terminal import announce_scene
+
+    out = out or again.parent / f"{again.stem}-again.exr"
+    check_writable(out, ".exr")
+    if out.resolve() == again.resolve():
+        raise InputError(f"{again} is what the new picture is compared with; choose another --out.")
+    result = draw_again(again, scene)
+    announce_scene(result.scene)
+    airlight.save(out, result.scene, result.frame)
+    say(f"{out}: {result.report(again)}.")
+    if not result.is_expected:
+        raise typer.Exit(1)
 
 
 @app.command()
@@ -144,26 +167,24 @@ def reference(
 
     Example: airlight reference sphere --size 256 256 --rel-error 0.005 --out sphere.exr
     """
+    import airlight
     from experiments.console import say
     from experiments.exr import check_writable
-    from experiments.pictures import write_reference
     from experiments.terminal import TerminalWatcher, announce_accuracy, announce_scene, announce_variant
-    from scenes.loader import load
     from scenes.mitsuba_setup import mitsuba
 
-    goal = Goal(rel_error, time_limit)
+    # refused before the scene is loaded
+    Goal(rel_error, time_limit)
     check_writable(out, ".exr")
-    loaded = load(scene, size=size, **_parameters(parameter))
+    loaded = airlight.load(scene, size, **parse_parameters(parameter))
     announce_scene(loaded)
     announce_variant()
     if check and mitsuba().variant() == "scalar_rgb":
         raise InputError("--check compares with volpath, and in scalar_rgb the reference is volpath; leave it out.")
-    from reference.estimate import estimate_reference
-
     with TerminalWatcher(rel_error) as watcher:
-        result = estimate_reference(loaded, goal, watcher.reference)
+        result = airlight.reference(loaded, rel_error, time_limit, watcher.reference)
     announce_accuracy(result)
-    write_reference(out, loaded, result)
+    airlight.save(out, loaded, result)
     estimate = result.estimate
     source = "from the cache" if result.from_cache else f"{estimate.seconds:.1f} s"
     say(
@@ -189,11 +210,11 @@ def compare(
     import json as json_module
     from dataclasses import asdict
 
-    from experiments.compare import compare_files
+    import airlight
     from experiments.console import console, say
     from experiments.terminal import metrics_table
 
-    metrics = compare_files(picture, truth, layer, heatmap)
+    metrics = airlight.compare(airlight.read(picture), airlight.read(truth), layer=layer, sheet=heatmap)
     if json:
         print(json_module.dumps({"layer": layer, **asdict(metrics)}))
     else:
@@ -226,18 +247,6 @@ def run(
         rows, folder = run_suite(name, loaded, out, watcher)
     console.print(results_table(rows))
     say(f"Results: {folder.resolve()}")
-
-
-def _parameters(given: list[str] | None) -> dict[str, str]:
-    parameters = {}
-    for text in given or []:
-        name, equals, value = text.partition("=")
-        if not (name and equals):
-            raise InputError(f"-p {text} should be NAME=VALUE, such as -p sigma_t=0.2.")
-        if name == "size":
-            raise InputError(f"-p {text}: the size of the image is set by --size W H, and is no parameter of a scene.")
-        parameters[name] = value
-    return parameters
 
 
 def _check_against_volpath(scene: Scene) -> None:

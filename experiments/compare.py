@@ -1,43 +1,84 @@
-"""Compares two EXR files of any origin."""
+"""Measures a picture against its reference, whether they were just made, read from files, or are plain arrays."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any, Protocol, TypeGuard
 
-from experiments.exr import Layers, check_writable, read_exr
+import numpy as np
+
+from experiments.exr import MAIN, check_writable
 from experiments.metrics import Image, Metrics, measure
+from experiments.pictures import Picture
 from experiments.sheet import summary, write_sheet
+from gpu_impl.frame import Frame
 from scenes.errors import InputError
 
 
-def compare_files(picture: Path, truth: Path, layer: str, heatmap: Path | None = None) -> Metrics:
+class Layered(Protocol):
+    """A result: a frame, a reference, or what was read from a file."""
+
+    @property
+    def layers(self) -> Mapping[str, Any]:
+        """Name to (H, W, 3) or (H, W)."""
+
+
+def compare(
+    test: Image | Layered,
+    truth: Image | Layered,
+    standard_error: Image | None = None,
+    layer: str | None = None,
+    sheet: Path | None = None,
+) -> Metrics:
     """Measure one layer of a picture against the same layer of a reference.
 
-    Where the reference holds its standard error, the bias is corrected by it.
+    Parameters
+    ----------
+    test, truth : results, or arrays (H, W, 3)
+    standard_error : (H, W, 3)    of the reference; by default what the reference knows of it
+    layer : of results: "composite", which is the default, "scattering" or "surface"
+    sheet : a PNG file to write, with both pictures and their errors
 
     Raises
     ------
     InputError
-        A file or a layer is missing, the sizes differ, or the heat map cannot be written.
+        A layer is missing, the sizes differ, or the sheet cannot be written.
     """
-    if heatmap:
-        check_writable(heatmap, ".png")
-    tested, _ = read_exr(picture)
-    reference, metadata = read_exr(truth)
-    test_image, reference_image = _layer(picture, tested, layer), _layer(truth, reference, layer)
-    metrics = measure(test_image, reference_image, reference.get(f"standard_error.{layer}"))
-    if heatmap:
-        stand_ins = metadata.get("stand_ins", "")
+    if sheet:
+        check_writable(sheet, ".png")
+    if layer and not (_is_result(test) or _is_result(truth)):
+        raise InputError(f"An array has no layer '{layer}'; compare results, or leave the layer out.")
+    layer = layer or MAIN
+    images = _layer(test, layer, "The picture"), _layer(truth, layer, "The reference")
+    if standard_error is None and _is_result(truth):
+        standard_error = truth.layers.get(f"standard_error.{layer}")
+    metrics = measure(*images, standard_error)
+    if sheet:
+        stand_ins = truth.metadata.get("stand_ins", "") if isinstance(truth, Picture) else ""
         note = f"stand-in for {stand_ins}" if stand_ins else ""
-        title = f"{picture.name} against {truth.name}: {layer}"
-        write_sheet(heatmap, title, test_image, reference_image, summary(asdict(metrics)), note)
+        title = f"{_name(test, 'a picture')} against {_name(truth, 'the reference')}: {layer}"
+        write_sheet(sheet, title, *images, summary(asdict(metrics)), note)
     return metrics
 
 
-def _layer(path: Path, layers: Layers, layer: str) -> Image:
-    image = layers.get(layer)
+def _is_result(result: Any) -> TypeGuard[Layered]:
+    return hasattr(result, "layers")
+
+
+def _layer(result: Any, layer: str, role: str) -> Image:
+    if not _is_result(result):
+        return np.asarray(result)
+    image = result.layers.get(layer)
     if image is None or image.ndim != 3:
-        colours = [name for name, found in layers.items() if found.ndim == 3]
-        raise InputError(f"{path} has no layer '{layer}'; it has {', '.join(colours) or 'no colour layer'}.")
+        colours = [name for name, found in result.layers.items() if found.ndim == 3]
+        whose = result.path if isinstance(result, Picture) else role
+        raise InputError(f"{whose} has no layer '{layer}'; it has {', '.join(colours) or 'no colour layer'}.")
     return image
+
+
+def _name(result: Any, otherwise: str) -> str:
+    if isinstance(result, Picture):
+        return result.path.name
+    return result.technique.name if isinstance(result, Frame) else otherwise

@@ -14,14 +14,21 @@ from scenes.replacing import replacing
 
 Layers = dict[str, np.ndarray]
 PREFIX = "airlight:"
+# the layer that a viewer shows which knows no layers
+MAIN = "composite"
 
 
 def write_exr(path: Path, layers: Mapping[str, np.ndarray], metadata: Mapping[str, object]) -> None:
     """Write layers to a file, beside its place first and then renamed.
 
+    Three channels become name.R, name.G and name.B, one becomes name.Y, and a depth becomes depth.Z: in OpenEXR's
+    convention Y is a luminance, and compositing programs look for the depth under Z.
+    The composite is there a second time as plain R, G and B. Viewers without layers, and image libraries, show nothing
+    else; ZIP finds the repetition, and a frame of 1024 x 1024 pixels grows by 1.5 %, a suite's case by 0.4 %.
+
     Parameters
     ----------
-    layers : name to (H, W, 3) or (H, W)    three channels become name.R, name.G, name.B; one becomes name.Y
+    layers : name to (H, W, 3) or (H, W)    row 0 at the top
     metadata : kept as text attributes with the prefix "airlight:"
 
     Raises
@@ -33,8 +40,11 @@ def write_exr(path: Path, layers: Mapping[str, np.ndarray], metadata: Mapping[st
 
     channels: dict[str, np.ndarray] = {}
     for name, image in layers.items():
-        planes = {"Y": image} if image.ndim == 2 else dict(zip("RGB", np.moveaxis(image, -1, 0), strict=True))
-        channels |= {f"{name}.{letter}": np.ascontiguousarray(plane, np.float32) for letter, plane in planes.items()}
+        letters = "RGB" if image.ndim == 3 else "Z" if name == "depth" else "Y"
+        for letter, plane in zip(letters, np.moveaxis(np.atleast_3d(image), -1, 0), strict=True):
+            channels[f"{name}.{letter}"] = np.ascontiguousarray(plane, np.float32)
+            if name == MAIN and image.ndim == 3:
+                channels[letter] = channels[f"{name}.{letter}"]
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     header |= {PREFIX + key: str(value) for key, value in metadata.items()}
     path = Path(path)
@@ -75,7 +85,7 @@ def read_exr(path: Path) -> tuple[Layers, dict[str, str]]:
 
     Returns
     -------
-    layers : name to (H, W, 3) or (H, W), float32     plain R, G, B channels are the layer "composite"
+    layers : name to (H, W, 3) or (H, W), float32     plain R, G, B are the layer "composite", where none has that name
     metadata : dict                                   what airlight wrote, without the prefix
 
     Raises
@@ -100,12 +110,17 @@ def read_exr(path: Path) -> tuple[Layers, dict[str, str]]:
 
 
 def _grouped(channels: Mapping[str, np.ndarray]) -> Layers:
+    """Layers of three colours or of one channel; whatever else a file holds is no picture of ours."""
     grouped: dict[str, dict[str, np.ndarray]] = {}
     for name, plane in channels.items():
         layer, _, letter = name.rpartition(".")
-        grouped.setdefault(layer or "composite", {})[letter] = plane
-    return {
-        layer: np.stack([planes[letter] for letter in "RGB"], axis=-1) if planes.keys() >= set("RGB") else planes["Y"]
-        for layer, planes in grouped.items()
-        if planes.keys() >= set("RGB") or "Y" in planes
-    }
+        grouped.setdefault(layer, {})[letter] = plane
+    plain = grouped.pop("", {})
+    grouped.setdefault(MAIN, plain)
+    layers: Layers = {}
+    for layer, planes in grouped.items():
+        if planes.keys() >= set("RGB"):
+            layers[layer] = np.stack([planes[letter] for letter in "RGB"], axis=-1)
+        elif len(planes) == 1:
+            (layers[layer],) = planes.values()
+    return layers

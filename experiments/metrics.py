@@ -43,6 +43,15 @@ class Metrics:
     image_mean_rel: float | None
     flip: float | None
 
+    def __repr__(self) -> str:
+        """One line, for notebooks: the numbers that a sheet shows, and the bias."""
+        if self.rel_50 is None:
+            return f"<Metrics: the reference is black; RMSE {self.rmse:.3g}>"
+        return (
+            f"<Metrics: median {self.rel_50:.3%}, 95 % below {self.rel_95:.3%}, 99 % below {self.rel_99:.3%}, "
+            f"image mean {self.image_mean_rel:+.3%}, bias {self.bias:.2g}, FLIP {self.flip:.4f}>"
+        )
+
 
 def signed_relative_error(test: Image, reference: Image) -> NDArray[np.float64]:
     """(t - r) / max(r, floor), same shape as the images."""

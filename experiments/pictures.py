@@ -2,49 +2,70 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from experiments.exr import Layers, write_exr
+from experiments.exr import Layers, read_exr, write_exr
 from experiments.metrics import signed_relative_error
-from experiments.provenance import describe_frame, describe_reference, describe_scene
+from experiments.provenance import describe_files, describe_frame, describe_reference, describe_scene
 from gpu_impl.frame import Frame
-from reference.estimate import Reference
+from reference.estimate import LAYERS, Reference
+from scenes.errors import InputError
 from scenes.model import Scene
 
-LAYERS = ("composite", "scattering", "surface")
+
+@dataclass(frozen=True)
+class Picture:
+    """What an EXR file holds.
+
+    Attributes
+    ----------
+    path : Path
+    layers : dict            name to (H, W, 3) or (H, W), float32, row 0 at the top
+    metadata : dict          what airlight wrote into it, as text; empty for another program's file
+    """
+
+    path: Path
+    layers: Layers
+    metadata: dict[str, str]
+
+    def __repr__(self) -> str:
+        """One line, for notebooks."""
+        return f"<Picture {self.path.name}: {', '.join(self.layers)}>"
 
 
-def frame_layers(frame: Frame) -> Layers:
-    """Layers of a frame."""
-    pictures = {layer: getattr(frame, layer) for layer in LAYERS}
-    return pictures | {"depth": frame.depth, "lit_intervals": frame.lit_intervals}
-
-
-def reference_layers(reference: Reference) -> Layers:
-    """Layers of a reference, with its standard errors."""
-    pictures = {layer: getattr(reference, layer) for layer in LAYERS}
-    return pictures | {f"standard_error.{layer}": reference.standard_error(layer) for layer in LAYERS}
+def read_picture(path: str | Path) -> Picture:
+    """Read an EXR file of any program; see `experiments.exr.read_exr`."""
+    return Picture(Path(path), *read_exr(Path(path)))
 
 
 def write_frame(path: Path, scene: Scene, frame: Frame) -> None:
     """Write what a technique drew."""
-    write_exr(path, frame_layers(frame), describe_scene(scene) | describe_frame(frame))
+    _write(path, scene, frame.layers, describe_frame(frame))
 
 
 def write_reference(path: Path, scene: Scene, reference: Reference) -> None:
     """Write what was estimated."""
-    write_exr(path, reference_layers(reference), describe_scene(scene) | describe_reference(reference))
+    _write(path, scene, reference.layers, describe_reference(reference))
 
 
 def write_case(path: Path, scene: Scene, frame: Frame, reference: Reference) -> None:
     """Write technique, reference and signed relative error in one file."""
-    layers = frame_layers(frame)
+    layers = frame.layers
     for layer in LAYERS:
         truth = getattr(reference, layer)
         layers[f"reference.{layer}"] = truth
         layers[f"standard_error.{layer}"] = reference.standard_error(layer)
         if np.any(truth):
             layers[f"error.{layer}"] = signed_relative_error(getattr(frame, layer), truth)
-    write_exr(path, layers, describe_scene(scene) | describe_frame(frame) | describe_reference(reference))
+    _write(path, scene, layers, describe_frame(frame) | describe_reference(reference))
+
+
+def _write(path: Path, scene: Scene, layers: Layers, metadata: dict[str, str]) -> None:
+    width, height = scene.camera.width, scene.camera.height
+    if any(image.shape[:2] != (height, width) for image in layers.values()):
+        # the metadata would name a scene that the picture is not of
+        raise InputError(f"{path}: the picture is not of the scene {scene.name} at {width} x {height} pixels.")
+    write_exr(path, layers, describe_scene(scene) | describe_files(scene) | metadata)

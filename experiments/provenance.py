@@ -1,9 +1,11 @@
-"""What made a result: versions, machine, commit."""
+"""What made a result: scene, technique, versions, machine, commit."""
 
 from __future__ import annotations
 
+import json
 import platform
 import subprocess
+from dataclasses import fields
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -15,6 +17,9 @@ if TYPE_CHECKING:
     from gpu_impl.frame import Frame
     from reference.estimate import Reference
     from scenes.model import Scene
+
+# keys of the technique's fields, where "airlight" is the program's version
+TECHNIQUE_KEYS = {"name": "technique", "airlight": "airlight_model"}
 
 
 @cache
@@ -50,11 +55,11 @@ def environment() -> dict[str, str]:
 
 
 def describe_scene(scene: Scene) -> dict[str, str]:
-    """Metadata of a scene: enough to load it again and to see whether it is the same."""
+    """What a row of results says of its scene; the parameters as a JSON object, whatever signs their values hold."""
     return {
         "scene": scene.name,
         "scene_digest": scene.digest,
-        "parameters": " ".join(f"{name}={value}" for name, value in scene.parameters.items()),
+        "parameters": json.dumps(scene.parameters),
         "size": f"{scene.camera.width} {scene.camera.height}",
         "stand_ins": " ".join(scene.stand_ins),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -62,19 +67,45 @@ def describe_scene(scene: Scene) -> dict[str, str]:
     }
 
 
-def describe_frame(frame: Frame) -> dict[str, str]:
-    """Metadata of what drew a frame."""
-    technique = frame.technique
+def describe_files(scene: Scene) -> dict[str, str]:
+    """Which files a scene was made from; in an EXR only, for a table is read on other machines.
+
+    A shipped scene is called by its name, any other by its absolute path; meshes and pictures are "name:sha256", a JSON
+    list. Credits are those that the meshes' terms ask for.
+    """
+    from scenes.mesh_catalogue import credit
+
+    credits = {credit(mesh.file) for mesh in scene.meshes if mesh.file}
     return {
-        "technique": technique.name,
-        "visibility": technique.visibility,
-        "airlight_model": technique.airlight,
-        "steps": str(technique.steps),
-        "shadow_map": str(technique.shadow_map),
-        "downsample": str(technique.downsample),
-        "gl_renderer": frame.gl.renderer,
-        "gl_version": frame.gl.version,
+        "scene_file": scene_file(scene),
+        "files": json.dumps(sorted(file_hashes(scene))),
+        "credits": "; ".join(sorted(filter(None, credits))),
     }
+
+
+def scene_file(scene: Scene) -> str:
+    """Name of a shipped scene, absolute path of any other."""
+    from scenes.catalogue import FOLDER
+
+    path = scene.path.absolute()
+    return path.stem if path.parent == FOLDER else str(path)
+
+
+def file_hashes(scene: Scene) -> dict[str, Path]:
+    """Mesh and picture files that a scene is made from: "name:sha256" to where each was found."""
+    from scenes.mesh_files import sha256
+
+    paths = [Path(node.props["filename"]) for node in scene.parsed.nodes if "filename" in node.props]
+    return {f"{path.name}:{sha256(path)}": path for path in paths}
+
+
+def describe_frame(frame: Frame) -> dict[str, str]:
+    """Metadata of what drew a frame: the technique's fields, each of them, and OpenGL's strings."""
+    technique = frame.technique
+    settings = {
+        TECHNIQUE_KEYS.get(field.name, field.name): str(getattr(technique, field.name)) for field in fields(technique)
+    }
+    return {**settings, "gl_renderer": frame.gl.renderer, "gl_version": frame.gl.version}
 
 
 def describe_reference(reference: Reference) -> dict[str, str]:

@@ -67,7 +67,7 @@ def run_suite(name: str, suite: Suite, parent: Path, watcher: Watcher) -> tuple[
     scenes = [load(scene, size=suite.size, **suite.parameters) for scene in suite.scenes]
     for scene in scenes:
         for technique in techniques:
-            technique.check_phase(scene.phase)
+            technique.check_scene(scene)
     folder = _make_folder(parent, name)
     rows: list[Row] = []
     total, number = len(suite.scenes) * len(techniques), 0

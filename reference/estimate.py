@@ -16,6 +16,7 @@ from reference.goal import Goal
 from reference.integrator import mi
 from scenes.model import Scene
 
+LAYERS = ("composite", "scattering", "surface")
 _ARRAYS = ("mean", "standard_error", "image_mean", "image_error")
 
 
@@ -56,6 +57,21 @@ class Reference:
         if layer == "composite":
             return np.hypot(self.standard_error("surface"), self.standard_error("scattering"))
         return self.estimate.standard_error[layer]
+
+    @property
+    def layers(self) -> dict[str, np.ndarray]:
+        """Every array by the name that its layer has in an EXR file; errors as "standard_error.scattering"."""
+        errors = {f"standard_error.{layer}": self.standard_error(layer) for layer in LAYERS}
+        return {layer: getattr(self, layer) for layer in LAYERS} | errors
+
+    def __repr__(self) -> str:
+        """One line, for notebooks."""
+        height, width = self.surface.shape[:2]
+        estimate = self.estimate
+        return (
+            f"<Reference {width} x {height}, relative standard error {estimate.rel_error:.2%} after "
+            f"{estimate.passes} passes{'' if estimate.reached else ', out of time'}>"
+        )
 
 
 def estimate_reference(scene: Scene, goal: Goal, report: Callable[[Progress], None] | None = None) -> Reference:

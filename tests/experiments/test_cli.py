@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from dataclasses import MISSING, fields
 from pathlib import Path
 
 import numpy as np
 import pytest
+import typer
 
 from experiments import cli
 from experiments.exr import read_exr, write_exr
+from gpu_impl.techniques import Technique
 
 COMMANDS = ["doctor", "list", "render", "reference", "compare", "run"]
 EXECUTABLE = Path(sys.executable).parent / "airlight"
@@ -59,6 +62,14 @@ def picture(path: str, value: float = 1.0, size: tuple[int, int] = (4, 6), layer
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
+        (["render", "empty"], "render needs a SCENE and --out"),
+        (["render", "--out", "a.exr"], "render needs a SCENE and --out"),
+        (["render", "--again", "none.exr"], "There is no file none.exr"),
+        (["render", "--again", "."], "There is no file ."),
+        (["render", "--again", "good.exr"], "good.exr does not say how it was drawn"),
+        (["render", "--again", "good.exr", "--out", "good.exr"], "choose another --out"),
+        (["render", "--again", "good.exr", "--out", "missing/a.exr"], "make it first"),
+        (["render", "--again", "good.exr", "--steps", "3", "-p", "a=b"], "leave --parameter and --steps out"),
         (["render", "nowhere", "--out", "a.exr"], "There is no scene 'nowhere'"),
         (["render", "n" * 300, "--out", "a.exr"], "There is no scene"),
         (["render", "two\nlines", "--out", "a.exr"], "There is no scene 'two lines'"),
@@ -175,8 +186,8 @@ def test_a_mesh_folder_that_is_not_there_is_named(airlight, monkeypatch: pytest.
 @pytest.mark.parametrize(
     "words",
     [
-        ["render", "empty"],
-        ["render", "--out", "a.exr"],
+        ["reference", "empty"],
+        ["reference", "--out", "a.exr"],
         ["draw"],
         ["render", "empty", "--sise", "3"],
         ["render", "empty", "--size", "8", "--out", "a.exr"],
@@ -201,9 +212,9 @@ def test_an_interrupt_is_code_130(airlight, monkeypatch: pytest.MonkeyPatch) -> 
 # --- what works ------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", [*COMMANDS, "meshes list", "meshes fetch"])
 def test_help_has_an_example(airlight, command: str) -> None:
-    result = airlight(command, "--help")
+    result = airlight(*command.split(), "--help")
     assert result.code == 0
     assert f"Example: airlight {command}" in " ".join(result.out.split())
 
@@ -227,7 +238,7 @@ def test_render_reference_and_compare(airlight) -> None:
     assert "relative standard error" in made.out
     layers, metadata = read_exr(Path("t.exr"))
     assert layers["composite"].shape == (16, 16, 3)
-    assert metadata["parameters"] == "sigma_t=0.2"
+    assert json.loads(metadata["parameters"]) == {"sigma_t": "0.2"}
     assert metadata["technique"] == "lit_intervals+quadrature"
     result = airlight("compare", "t.exr", "r.exr", "--layer", "scattering", "--heatmap", "heat.png", "--json")
     assert result.code == 0
@@ -239,6 +250,40 @@ def test_render_reference_and_compare(airlight) -> None:
     assert Path("heat.png").read_bytes().startswith(b"\x89PNG")
     again = airlight("reference", "empty", *SMALL, "-p", "sigma_t=0.2", "--rel-error", "0.05", "--out", "r2.exr")
     assert "from the cache" in again.out
+
+
+def test_render_again(airlight) -> None:
+    assert airlight("render", "empty", *SMALL, "-p", "sigma_t=0.2", "--steps", "9", "--out", "f.exr").code == 0
+    before = Path("f.exr").read_bytes()
+    result = airlight("render", "--again", "f.exr")
+    assert result.code == 0
+    assert result.out.startswith("f-again.exr: the same pixels as f.exr, bit for bit in composite, scattering")
+    assert Path("f.exr").read_bytes() == before
+    first, again = read_exr(Path("f.exr")), read_exr(Path("f-again.exr"))
+    for layer, image in first[0].items():
+        np.testing.assert_array_equal(again[0][layer], image)
+    assert first[1] | {"date": ""} == again[1] | {"date": ""}
+    layers, metadata = first
+    layers["surface"][4, 5, 0] += 0.25
+    write_exr(Path("g.exr"), layers, metadata)
+    result = airlight("render", "empty", "--again", "g.exr", "--out", "h.exr")
+    assert result.code == 1
+    assert "h.exr: 1 of 256 pixels differ from g.exr, by at most 0.25, in surface, though drawn by" in result.out
+    write_exr(Path("g.exr"), layers, metadata | {"gl_version": "another"})
+    result = airlight("render", "--again", "g.exr", "--out", "h.exr")
+    assert result.code == 0
+    assert "gl_version was another and is" in result.out
+    Path("link.exr").symlink_to("f.exr")
+    result = airlight("render", "--again", "f.exr", "--out", "link.exr")
+    assert result.code == 2
+    assert "choose another --out" in result.err
+
+
+def test_every_setting_of_a_technique_is_an_option() -> None:
+    options = {parameter.name for parameter in typer.main.get_command(cli.app).commands["render"].params}
+    settings = {field.name for field in fields(Technique) if field.default is not MISSING}
+    assert settings
+    assert settings <= options
 
 
 def test_compare_says_which_meshes_are_stand_ins(airlight, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -278,7 +323,7 @@ def test_the_installed_program_ends_in_a_sentence() -> None:
     assert run.stderr.startswith("airlight: There is no scene 'nowhere'")
 
 
-@pytest.mark.parametrize("words", [["--help"], ["render", "--help"]])
+@pytest.mark.parametrize("words", [["--help"], ["render", "--help"], ["meshes", "--help"]])
 def test_help_loads_nothing_heavy(words: list[str]) -> None:
     code = (
         "import sys; from experiments.cli import main; sys.argv = ['airlight', *sys.argv[1:]]\n"

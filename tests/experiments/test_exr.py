@@ -7,7 +7,10 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 import pytest
+from plain_exr import read_plain
+from scene_files import point, sphere, write_scene
 
+import airlight
 from experiments.exr import check_writable, read_exr, write_exr
 from scenes.errors import InputError
 from scenes.mitsuba_setup import mitsuba
@@ -36,14 +39,67 @@ def test_mitsuba_reads_the_same(tmp_path: Path) -> None:
     bitmap = mi.Bitmap(str(tmp_path / "a.exr"))
     names = [field.name for field in bitmap.struct_()]
     expected = {f"{layer}.{letter}" for layer in ("composite", "standard_error.scattering") for letter in "RGB"}
-    assert set(names) == expected | {"depth.Y"}
+    assert set(names) == expected | {"depth.Z"} | set("RGB")
     planes = dict(zip(names, np.moveaxis(np.array(bitmap), -1, 0), strict=True))
     assert bitmap.component_format() == mi.Struct.Type.Float32
     # row 0 is the top one in Mitsuba too
     for place, letter in enumerate("RGB"):
         np.testing.assert_array_equal(planes[f"composite.{letter}"], COLOUR[..., place])
-    np.testing.assert_array_equal(planes["depth.Y"], DEPTH)
+    np.testing.assert_array_equal(planes["depth.Z"], DEPTH)
     assert bitmap.metadata()["airlight:scene"] == "empty"
+    # what Mitsuba itself takes for the picture, and for its layers
+    parts = dict(bitmap.split())
+    assert parts.keys() == {"<root>", "composite", "standard_error.scattering", "depth"}
+    np.testing.assert_array_equal(np.array(parts["<root>"]), COLOUR)
+    np.testing.assert_array_equal(np.array(parts["composite"]), COLOUR)
+
+
+def test_a_reader_of_our_own_reads_the_same(tmp_path: Path) -> None:
+    # more rows than one compressed block holds, and one layer that shrinks
+    tall = np.tile(COLOUR, (5, 1, 1))
+    layers = {
+        "composite": tall,
+        "error.surface": np.zeros_like(tall),
+        "depth": tall[..., 0],
+        "lit_intervals": tall[..., 1],
+    }
+    write_exr(tmp_path / "a.exr", layers, {"scene": "nébel", "empty": ""})
+    plain = read_plain(tmp_path / "a.exr")
+    expected = {f"{layer}.{letter}" for layer in ("composite", "error.surface") for letter in "RGB"}
+    assert plain.channels.keys() == expected | {"R", "G", "B", "depth.Z", "lit_intervals.Y"}
+    for place, letter in enumerate("RGB"):
+        for name in (letter, f"composite.{letter}"):
+            np.testing.assert_array_equal(plain.channels[name], tall[..., place])
+        assert not plain.channels[f"error.surface.{letter}"].any()
+    np.testing.assert_array_equal(plain.channels["depth.Z"], tall[..., 0])
+    np.testing.assert_array_equal(plain.channels["lit_intervals.Y"], tall[..., 1])
+    assert plain.texts["airlight:scene"] == "nébel"
+    assert plain.texts["airlight:empty"] == ""
+
+
+def test_a_case_holds_the_stated_layers_the_right_way_up(tmp_path: Path) -> None:
+    # up and to the left, before a camera that looks along -z
+    scene = write_scene(tmp_path, emitters=point(-1.2, 1, 0), shapes=sphere(1, -1, 0, 0.5), size=(24, 16))
+    frame, truth = airlight.render(scene, steps=40), airlight.reference(scene, rel_error=0.1)
+    airlight.save(tmp_path / "a.exr", scene, frame, truth)
+    plain = read_plain(tmp_path / "a.exr")
+    colours = ["composite", "scattering", "surface"]
+    colours += [f"{group}.{layer}" for group in ("reference", "error", "standard_error") for layer in colours]
+    singles = {"depth.Z", "lit_intervals.Y"}
+    assert plain.channels.keys() == {f"{layer}.{letter}" for layer in colours for letter in "RGB"} | singles | set(
+        "RGB"
+    )
+    for layer in ("scattering", "reference.scattering"):
+        row, column = np.unravel_index(np.argmax(plain.channels[f"{layer}.G"]), (16, 24))
+        assert row < 8
+        assert column < 12
+    # the sphere is down and to the right, and nearer than the end of the ray
+    row, column = np.unravel_index(np.argmin(plain.channels["depth.Z"]), (16, 24))
+    assert row >= 8
+    assert column >= 12
+    for key in ("scene", "scene_digest", "parameters", "technique", "steps", "seeds", "mitsuba", "gl_renderer"):
+        assert plain.texts[f"airlight:{key}"], key
+    assert plain.texts["airlight:steps"] == "40"
 
 
 def test_another_programs_plain_picture_is_the_composite(tmp_path: Path) -> None:
@@ -53,6 +109,17 @@ def test_another_programs_plain_picture_is_the_composite(tmp_path: Path) -> None
     assert layers.keys() == {"composite"}
     np.testing.assert_array_equal(layers["composite"], COLOUR)
     assert metadata == {}
+
+
+def test_a_named_composite_goes_before_plain_channels(tmp_path: Path) -> None:
+    channels = {name: np.full((2, 3), value, np.float32) for value, name in enumerate(["R", "G", "B", "A", "depth.Y"])}
+    channels |= {f"composite.{letter}": np.full((2, 3), 7, np.float32) for letter in "RGB"}
+    channels |= {f"normal.{letter}": np.zeros((2, 3), np.float32) for letter in "XYZ"}
+    OpenEXR.File({}, channels).write(str(tmp_path / "a.exr"))
+    layers, _ = read_exr(tmp_path / "a.exr")
+    assert layers.keys() == {"composite", "depth"}
+    assert (layers["composite"] == 7).all()
+    assert layers["depth"].shape == (2, 3)
 
 
 def test_half_floats_are_widened(tmp_path: Path) -> None:

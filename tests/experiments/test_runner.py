@@ -63,7 +63,7 @@ def test_the_tables_hold_a_row_per_case_and_layer(run: tuple[list[Row], Path, No
     text = polars.read_csv(folder / "results.csv", schema_overrides=table.schema)
     # an empty text is nothing in a CSV file
     assert text.fill_null("").equals(table.with_columns(polars.col(polars.String).fill_null("")).fill_null(""))
-    assert set(table["parameters"]) == {"sigma_t=0.2"}
+    assert set(table["parameters"]) == {'{"sigma_t": "0.2"}'}
     assert set(table["size"]) == {"16 12"}
 
 
