@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import reference.plugins  # noqa: F401 - registers what scenes may name
 from scenes.errors import InputError
 from scenes.mitsuba_setup import mitsuba, parser_config
 from scenes.model import Scene

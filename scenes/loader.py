@@ -8,6 +8,7 @@ refused, because a picture that silently ignores part of its scene is wrong.
 from __future__ import annotations
 
 import hashlib
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -18,13 +19,15 @@ from scenes.errors import InputError
 from scenes.lights import load_light
 from scenes.media import Fog, load_medium, take_fog
 from scenes.mesh_files import sha256
-from scenes.mitsuba_setup import parser_config
+from scenes.mitsuba_setup import mitsuba, parser_config
 from scenes.model import Array, Mesh, Scene
 from scenes.shapes import FROM_FILE, Shape, instance_of, load_shape
 from scenes.xml_nodes import Node
 
 # Mitsuba's parse_file takes parameters beside arguments of these names
 RESERVED = ("config", "filename")
+# plugins that read a file
+FILES = (*FROM_FILE, "bitmap")
 
 
 def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters: object) -> Scene:
@@ -88,9 +91,13 @@ def _parse(path: Path, parameters: dict[str, str]) -> Any:
     config = parser_config()
     import mitsuba.parser as parser
 
+    # <path> elements add folders to Mitsuba's list, which would serve every later scene of this process too
+    resolver = mitsuba().file_resolver()
+    before = [str(folder) for folder in resolver]
     try:
         state = parser.parse_file(config, str(path), **parameters)
         parser.transform_all(config, state)
+        _find_in(list(resolver)[: len(list(resolver)) - len(before)], state)
         # text of another encoding passes the parser, and breaks whoever reads it
         for node in state.nodes:
             node.props.id()
@@ -98,7 +105,21 @@ def _parse(path: Path, parameters: dict[str, str]) -> Any:
         raise InputError(f"{path} is not UTF-8; save it as UTF-8.") from None
     except (RuntimeError, ValueError) as error:
         raise InputError(_sentence(path, str(error))) from None
+    finally:
+        resolver.clear()
+        for folder in before:
+            resolver.append(folder)
     return state
+
+
+def _find_in(folders: list[Any], state: Any) -> None:
+    """Spell out the path of each file that is found in one of the folders that the scene names by <path>."""
+    for node in state.nodes:
+        name = node.props["filename"] if node.props.plugin_name() in FILES and "filename" in node.props else None
+        if isinstance(name, str) and not Path(name).is_absolute():
+            found = [path for path in (Path(str(folder), name) for folder in folders) if os.path.isfile(path)]
+            if found:
+                node.props["filename"] = str(found[0].absolute())
 
 
 def _sentence(path: Path, message: str) -> str:
@@ -172,7 +193,7 @@ def _digest(state: Any) -> str:
 
     paths = {}
     for node in state.nodes:
-        if node.props.plugin_name() in (*FROM_FILE, "bitmap") and "filename" in node.props:
+        if node.props.plugin_name() in FILES and "filename" in node.props:
             # by content: the same mesh in another folder is the same scene
             paths[node] = node.props["filename"]
             node.props["filename"] = sha256(paths[node])

@@ -29,7 +29,7 @@ def load_medium(node: Node) -> tuple[analytic.Medium, Phase]:
     if node.plugin != "homogeneous":
         raise node.refuse("is not supported; use homogeneous.")
     scale = node.number("scale", 1.0)
-    is_colour = not isinstance(node.props.get("sigma_t", 1.0), int | float)
+    is_colour = "sigma_t" in node.unread and not isinstance(node.props["sigma_t"], int | float)
     colour = node.color("sigma_t", 1.0)
     if is_colour and (colour > 1).any():
         raise node.refuse(f"has 'sigma_t' = {colour.tolist()}; Mitsuba takes colours of at most 1: use a 'scale' too.")

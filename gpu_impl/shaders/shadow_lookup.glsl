@@ -4,6 +4,7 @@
 
 uniform sampler2D shadow_map;
 uniform int tile_size;      // texels on a side
+uniform float texel_slope;  // width of a texel at distance 1, or anywhere in parallel light
 uniform mat4 tile_matrix;   // world to clip space of the one tile
 
 // Where in the map a direction is looked up: position in its tile, -1 to 1, and the number of the tile (shadow_map.py).
@@ -14,18 +15,33 @@ vec3 tile_position(vec3 from_light) {
     return d.z > 0.0 ? vec3(-d.x / a.z, d.y / a.z, 4.0) : vec3(d.xy / a.z, 5.0);
 }
 
-// Distance to the nearest surface in the direction of `point`; without end outside a flat map: there a spot
-// sheds no light, and parallel light meets nothing.
-float nearest_surface(Light light, vec3 point) {
+// One of the rows of tile_matrix without its translation: a tile's x, y and viewing axis.
+vec3 tile_row(int i) { return vec3(tile_matrix[0][i], tile_matrix[1][i], tile_matrix[2][i]); }
+
+// Position in a tile, -1 to 1, and the tile's number; the number is negative outside a flat map.
+vec3 map_position(Light light, vec3 point) {
 #if TILES == 1
     vec4 clip = tile_matrix * vec4(point, 1.0);
-    if (clip.w <= 0.0 || max(abs(clip.x), abs(clip.y)) >= clip.w) return 3e38;
-    vec3 position = vec3(clip.xy / clip.w, 0.0);
+    if (clip.w <= 0.0 || max(abs(clip.x), abs(clip.y)) >= clip.w) return vec3(0.0, 0.0, -1.0);
+    return vec3(clip.xy / clip.w, 0.0);
 #else
-    vec3 position = tile_position(point - light.position);
+    return tile_position(point - light.position);
 #endif
-    ivec2 texel = min(ivec2((0.5 + 0.5 * position.xy) * float(tile_size)), ivec2(tile_size - 1));
+}
+
+ivec2 texel_of(vec3 position) {
+    return min(ivec2((0.5 + 0.5 * position.xy) * float(tile_size)), ivec2(tile_size - 1));
+}
+
+float stored_distance(ivec2 texel, vec3 position) {
     return texelFetch(shadow_map, texel + ivec2(int(position.z) * tile_size, 0), 0).r;
+}
+
+// Distance to the nearest surface in the direction of `point`; without end outside a flat map: there a spot sheds no
+// light, and parallel light meets nothing.
+float nearest_surface(Light light, vec3 point) {
+    vec3 position = map_position(light, point);
+    return position.z < 0.0 ? 3e38 : stored_distance(texel_of(position), position);
 }
 
 // What the map holds distances of.

@@ -3,14 +3,13 @@
 #include "camera_ray.glsl"
 #include "light.glsl"
 #include "fog.glsl"
-#include "shadow_lookup.glsl"
+#include "surface_shadow.glsl"
 
 uniform Light light;
 uniform sampler2D normal_and_distance;
 uniform sampler2D surface_diffuse;
 uniform sampler2D surface_specular;
 uniform sampler2D triangle_normal;
-uniform float texel_slope;   // width of a shadow-map texel at distance 1, or anywhere in parallel light
 out vec4 result;
 
 void main() {
@@ -32,11 +31,7 @@ void main() {
     float cos_mirror = dot(reflect(ray.d, surface.xyz), l);
     if (cos_mirror > 0.0)
         reflected += specular.rgb * (specular.a + 2.0) * 0.159154943091895 * pow(cos_mirror, specular.a);
-    // A texel holds the distance at its centre; across it a slanted triangle varies by this much.
-    vec3 flat_normal = texelFetch(triangle_normal, pixel, 0).xyz;
-    float slope = length(cross(flat_normal, l)) / max(abs(dot(flat_normal, l)), 1e-30);
-    float bias = texel_slope * (light.directional ? 1.0 : d) * min(slope, 20.0) + 1e-4 * d;
-    if (d - bias > nearest_surface(light, point)) return;
+    if (surface_in_shadow(light, point, texelFetch(triangle_normal, pixel, 0).xyz)) return;
     vec2 eye_leg = fog_interval(ray.o, ray.d, vec2(0.0, surface.w));
     float legs = eye_leg.y - eye_leg.x + light_leg(light, point);
     result.rgb = reflected * cos_light * light.intensity * angular(light, point) / (light.directional ? 1.0 : d * d)
