@@ -151,7 +151,10 @@ class FilmVolpath:
     layers: tuple[str, ...] = ("scattering", "surface")
     samples_per_pass = 8
     # how the parameters end that are zero for a layer
-    _BLACK: ClassVar[dict[str, str]] = {"scattering": ".reflectance.value", "surface": ".albedo.value.value"}
+    _BLACK: ClassVar[dict[str, tuple[str, ...]]] = {
+        "scattering": ("reflectance.value", "reflectance.data"),
+        "surface": (".albedo.value.value",),
+    }
 
     def __init__(self, scene: Scene) -> None:
         self._scene = instantiate(scene).scene
@@ -184,13 +187,13 @@ def default_estimator() -> type[Equiangular] | type[FilmVolpath]:
 
 
 @contextmanager
-def _zero(mitsuba_scene: Any, ending: str) -> Iterator[None]:
-    """Set the parameters with this ending to zero for a while: what is instantiated from one parse is shared."""
+def _zero(mitsuba_scene: Any, endings: tuple[str, ...]) -> Iterator[None]:
+    """Set the parameters with these endings to zero for a while: what is instantiated from one parse is shared."""
     parameters = mi.traverse(mitsuba_scene)
-    keys = [key for key in parameters.keys() if key.endswith(ending)]  # noqa: SIM118 - the map has no iterator
+    keys = [key for key in parameters.keys() if key.endswith(endings)]  # noqa: SIM118 - the map has no iterator
     before = {key: type(parameters[key])(parameters[key]) for key in keys}
     try:
-        parameters.update({key: type(value)(0.0) for key, value in before.items()})
+        parameters.update({key: value * 0 for key, value in before.items()})
         yield
     finally:
         parameters.update(before)
@@ -206,7 +209,8 @@ def _box_sensor(scene: Scene, mitsuba_scene: Any) -> Any:
             "fov": 2 * np.degrees(np.arctan(camera.tan_half_x)),
             "near_clip": camera.near,
             "far_clip": camera.far,
-            "medium": mitsuba_scene.sensors()[0].get_medium(),
+            # a camera outside a bounded medium has none
+            **({} if (medium := mitsuba_scene.sensors()[0].get_medium()) is None else {"medium": medium}),
             "film": {
                 "type": "hdrfilm",
                 "width": camera.width,

@@ -80,7 +80,10 @@ def bounded_path(scene: Any, ray: Any, in_fog: Any, active: Any = True) -> FogPa
     in_fog : Bool    whether the ray runs in the medium up to the first boundary, if it meets none
     """
 
-    def advance(going: Any, t: Any, inside: Any, blocked: Any, last: Any, begin: Any, end: Any, length: Any) -> Any:
+    def advance(
+        going: Any, t: Any, mark: Any, inside: Any, blocked: Any, last: Any, begin: Any, end: Any, length: Any
+    ) -> Any:
+        # the next piece is looked for from t on, and counts from the boundary at `mark`, a rounding before it
         rest = mi.Ray3f(ray)
         rest.o, rest.maxt = ray(t), ray.maxt - t
         si = scene.ray_intersect(rest, mi.RayFlags.Minimal, False, going)
@@ -88,19 +91,20 @@ def bounded_path(scene: Any, ray: Any, in_fog: Any, active: Any = True) -> FogPa
         passes = hit & mi.has_flag(si.bsdf().flags(), mi.BSDFFlags.Null)
         leaving = dr.dot(si.n, ray.d) > 0
         reached = dr.select(hit, t + si.t, ray.maxt)
-        fog = going & dr.select(passes, leaving, inside) & dr.isfinite(reached)
-        begin = dr.select(fog & (end < 0), t, begin)
+        fog = going & dr.select(passes, leaving, inside) & (reached < dr.largest(mi.Float))
+        begin = dr.select(fog & (end < 0), mark, begin)
         end = dr.select(fog, reached, end)
-        length = dr.select(fog, length + reached - t, length)
+        length = dr.select(fog, length + reached - mark, length)
         inside = dr.select(passes, ~leaving, inside)
         behind = reached + STEP * (reached + dr.max(dr.abs(si.p)))
         t = dr.select(passes, behind, dr.select(going, reached, t))
+        mark = dr.select(passes, reached, mark)
         last = dr.select(passes, behind, last)
-        return passes & (t < ray.maxt), t, inside, blocked | (hit & ~passes), last, begin, end, length
+        return passes & (t < ray.maxt), t, mark, inside, blocked | (hit & ~passes), last, begin, end, length
 
     count = dr.width(ray)
     zero = dr.zeros(mi.Float, count)
     none = dr.zeros(mi.Bool, count)
-    state = (none | active, zero, none | in_fog, none, zero, zero, zero - 1, zero)
-    _, t, inside, blocked, last, begin, end, length = dr.while_loop(state, lambda going, *_: going, advance)
+    state = (none | active, zero, zero, none | in_fog, none, zero, zero, zero - 1, zero)
+    _, t, _, inside, blocked, last, begin, end, length = dr.while_loop(state, lambda going, *_: going, advance)
     return FogPath(blocked, last, dr.minimum(t, ray.maxt), begin, dr.maximum(begin, end), length, inside)

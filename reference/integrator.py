@@ -132,8 +132,10 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
         """Whether a light sees a point, and over what length its light is attenuated on the way [scene unit]."""
         if not bounded:
             return active & sees(scene, ds, margin, active), self.light_share * ds.dist
-        path = bounded_path(scene, from_light(ds, margin, self.light_share), in_fog, active)
-        return active & ~path.blocked, path.fog_length
+        # all the way, for the last of it may hold the boundary; what stands in the margin is the surface itself
+        path = bounded_path(scene, from_light(ds, 0.0, self.light_share), in_fog, active)
+        blocked = path.blocked & (path.t_end < ds.dist * (self.light_share - margin))
+        return active & ~blocked, path.fog_length
 
     @staticmethod
     def _interaction(medium: Any, ray: Any, t: Any) -> Any:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
+from other_meshes import write_models
 
 from scenes.mitsuba_setup import mitsuba
 
@@ -18,6 +21,15 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("XDG_DATA_HOME", str(tmp_path_factory.mktemp("data")))
         yield
+
+
+@pytest.fixture(scope="session")
+def others(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of scenes in other people's style, with the models and pictures that they name."""
+    folder = tmp_path_factory.mktemp("elsewhere") / "others"
+    shutil.copytree(Path(__file__).parent / "others", folder)
+    write_models(folder / "models")
+    return folder
 
 
 @pytest.fixture(autouse=True)

@@ -5,12 +5,10 @@ The scenes are the shipped ones and those of tests/others, written as other peop
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
-from other_meshes import write_models
 
 from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import find_technique
@@ -23,14 +21,6 @@ from scenes.model import Scene
 OTHERS = Path(__file__).parent / "others"
 # a quarter of a pixel's footprint of depth, and the tessellation's chord error
 DEPTH = 0.02
-
-
-@pytest.fixture(scope="module")
-def others(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("elsewhere") / "others"
-    shutil.copytree(OTHERS, folder, dirs_exist_ok=True)
-    write_models(folder / "models")
-    return folder
 
 
 def mitsuba_surface_and_depth(scene: Scene) -> tuple[np.ndarray, np.ndarray]:

@@ -22,6 +22,9 @@ PHASES = [
     {"phase": "hg", "g": 0.6},
     {"phase": "hg", "g": -0.5},
     {"phase": "hg", "g": 0.9},
+    {"phase": "schlick", "k": 0.8},
+    {"phase": "cornette_shanks", "g": 0.8},
+    {"phase": "tabphase"},
 ]
 HARD_SPOTS = {
     "down": spot("0.3, 3.5, 0", "0, 0, 0", 24, 24),
@@ -49,7 +52,7 @@ def unlike(image: np.ndarray, exact: np.ndarray) -> float:
 @pytest.mark.parametrize("parameters", PHASES, ids=str)
 def test_quadrature(parameters: dict, draw) -> None:
     scene = load("empty", size=(64, 64), **parameters)
-    # measured 7.3e-7, 7.6e-7, 8.0e-7, 8.0e-7 and 1.2e-6
+    # measured 7.3e-7, 7.6e-7, 8.0e-7, 8.0e-7, 1.2e-6, 7.9e-7, 1.0e-6 and 8.9e-7
     assert worst(draw(scene, QUADRATURE, **QUICK).scattering, whole_ray_airlight(scene)) < 4e-6
 
 

@@ -53,11 +53,14 @@ def scalar(command: list[str], cache: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_the_fallback(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["sphere", "sun_in_a_box", "in_parts"])
+def test_the_fallback(name: str, others: Path, tmp_path: Path) -> None:
+    """A shipped scene, one with a bounded medium under the sun, and one with Phong surfaces."""
+    scene = name if name == "sphere" else str(others / f"{name}.xml")
     out = tmp_path / "scalar.exr"
     main = ["-c", "from experiments.cli import main; main()"]
     options = ["--size", str(SIDE), str(SIDE), "--rel-error", "0.2", "--time-limit", "5", "--out", str(out)]
-    run = scalar([*main, "reference", "sphere", *options], tmp_path)
+    run = scalar([*main, "reference", scene, *options], tmp_path)
     assert run.returncode == 0, run.stderr
     assert "scalar_rgb" in run.stdout + run.stderr
     assert "averaged over pixels" in run.stdout + run.stderr
@@ -66,7 +69,7 @@ def test_the_fallback(tmp_path: Path) -> None:
     header = OpenEXR.File(str(out)).header()
     assert header["airlight:variant"] == "scalar_rgb"
     assert header["airlight:pixel_filter"] == "box"
-    truth = converge(Equiangular(load("sphere", size=(SIDE * FINER, SIDE * FINER))), Goal(0.1))
+    truth = converge(Equiangular(load(scene, size=(SIDE * FINER, SIDE * FINER))), Goal(0.1))
     for layer in ("scattering", "surface"):
         # a film's pixels are independent of each other
         error = np.sqrt((layers[f"standard_error.{layer}"].astype(float) ** 2).sum((0, 1))) / SIDE**2

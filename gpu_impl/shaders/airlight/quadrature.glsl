@@ -41,7 +41,26 @@ vec3 channel(Ray ray, Light light, float t0, float dt, float extinction) {
     return 2.0 * q * dY * sum / p.h * exp(-extinction * (t0 + p.h * r_a));
 }
 
+// For unit intensity and unit scattering coefficient.
+vec3 unit_airlight(Ray ray, Light light, float t0, float dt) {
+    return WHOLE_LEG == 1 ? PER_CHANNEL(channel, ray, light, t0, dt) : through_boundary(ray, light, t0, dt);
+}
+
 vec3 airlight(Ray ray, Light light, float t0, float dt) {
-    vec3 seen = WHOLE_LEG == 1 ? PER_CHANNEL(channel, ray, light, t0, dt) : through_boundary(ray, light, t0, dt);
-    return light.intensity * sigma_s * seen;
+    vec3 scale = light.intensity * sigma_s;
+    // parallel light is scattered by one angle all along the ray
+    int kinks = light.directional ? 0 : phase_kinks();
+    if (kinks == 0) return scale * unit_airlight(ray, light, t0, dt);
+    // a table is smooth between two of its values
+    Passage p = passage(ray, light);
+    vec3 sum = vec3(0.0);
+    float begin = t0, end = t0 + dt;
+    for (int i = 0; i <= kinks && begin < end; ++i) {
+        float v = i < kinks ? phase_kink(i) : 0.0;
+        float next = i < kinks ? min(p.t_h + 0.5 * p.h * (v - 1.0 / v), end) : end;
+        if (next <= begin) continue;
+        sum += unit_airlight(ray, light, begin, next - begin);
+        begin = next;
+    }
+    return scale * sum;
 }

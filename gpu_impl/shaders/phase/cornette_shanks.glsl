@@ -11,3 +11,6 @@ float phase(vec2 half_angle) {
 
 // the poles of hg
 float phase_scale() { return sqrt((1.0 - g) / (1.0 + g)); }
+
+int phase_kinks() { return 0; }
+float phase_kink(int i) { return 0.0; }

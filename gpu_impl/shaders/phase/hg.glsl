@@ -9,3 +9,6 @@ float phase(vec2 half_angle) {
 
 // its poles in v lie at +-i (1 - g) / (1 + g)
 float phase_scale() { return sqrt((1.0 - g) / (1.0 + g)); }
+
+int phase_kinks() { return 0; }
+float phase_kink(int i) { return 0.0; }

@@ -6,3 +6,7 @@ float phase(vec2 half_angle) { return 0.0795774715459477; }
 
 // the scale of v = tan(theta / 2) on which the function changes: sets the map of the quadrature
 float phase_scale() { return 1.0; }
+
+// where its slope jumps: how many places there are, and their v in ascending order
+int phase_kinks() { return 0; }
+float phase_kink(int i) { return 0.0; }

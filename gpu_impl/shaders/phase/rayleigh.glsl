@@ -5,3 +5,6 @@ float phase(vec2 half_angle) {
 }
 
 float phase_scale() { return 1.0; }
+
+int phase_kinks() { return 0; }
+float phase_kink(int i) { return 0.0; }

@@ -9,3 +9,6 @@ float phase(vec2 half_angle) {
 
 // its poles in v lie at +-i sqrt((1 - k) / (1 + k))
 float phase_scale() { return sqrt(sqrt((1.0 - k) / (1.0 + k))); }
+
+int phase_kinks() { return 0; }
+float phase_kink(int i) { return 0.0; }

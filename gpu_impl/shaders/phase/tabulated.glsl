@@ -12,7 +12,12 @@ float phase(vec2 half_angle) {
 }
 
 // As hg's with the same forward peak: there (1 - g) / (1 + g) = (4 pi p(1) (1 + g))^(-1/2), of which the fourth root
-// of 1 + g is left out. A quadrature whose nodes do not stop at the kinks stays inexact, whatever the scale.
+// of 1 + g is left out.
 float phase_scale() {
     return min(1.0, inversesqrt(sqrt(12.5663706143592 * max(phase_table[phase_table.length() - 1], 1e-20))));
 }
+
+int phase_kinks() { return phase_table.length() - 2; }
+
+// v = tan(theta / 2) of the inner values, from the forward one on
+float phase_kink(int i) { return sqrt(float(i + 1) / float(phase_table.length() - 2 - i)); }
