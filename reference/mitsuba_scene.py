@@ -7,6 +7,7 @@ from typing import Any
 
 import reference.plugins  # noqa: F401 - registers what scenes may name
 from scenes.errors import InputError
+from scenes.messages import one_sentence
 from scenes.mitsuba_setup import mitsuba, parser_config
 from scenes.model import Scene
 
@@ -33,8 +34,7 @@ def instantiate(scene: Scene) -> MitsubaScene:
         made: Any = parser.instantiate(parser_config(), scene.parsed)
     except (RuntimeError, ValueError) as error:
         # what airlight replaces (integrator, sampler, filter) or does not use still has to exist
-        sentence = " ".join(str(error).split()).rstrip(".")
-        raise InputError(f"Mitsuba refuses {scene.path}: {sentence}.") from None
+        raise InputError(one_sentence(scene.path, str(error))) from None
     parameters = mi.traverse(made)
     for name, normals in scene.normals.items():
         parameters[name] = normals

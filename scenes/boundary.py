@@ -52,6 +52,8 @@ def convex_hull(triangles: Triangles) -> Boundary:
     """
     corners = np.asarray(triangles.vertices, np.float64)
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    if not size > 1e-6 * np.abs(corners).max():
+        raise ValueError("it is too small, or too far from the origin, for float32")
     # flat-shaded meshes repeat a corner once a face
     _, place = np.unique(np.round(corners / (TOLERANCE * size)).astype(np.int64), axis=0, return_inverse=True)
     faces = place.reshape(-1)[np.asarray(triangles.faces, np.int64)]

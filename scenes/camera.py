@@ -74,7 +74,7 @@ def _tan_half_x(node: Node, aspect: float) -> float:
     fov = node.number("fov")
     tan_half = float(np.tan(np.radians(fov) / 2))
     # near 180 degrees float32 has no digits left
-    if not (0 < fov < 180 and tan_half < 1e3):
+    if not (0 < fov < 180 and 1e-6 < tan_half < 1e3):
         raise node.refuse(f"has 'fov' = {fov}, which should lie between 0 and 180 degrees.")
     axis = node.take("fov_axis", "x")
     if axis in ("smaller", "larger"):

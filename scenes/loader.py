@@ -8,8 +8,6 @@ refused, because a picture that silently ignores part of its scene is wrong.
 from __future__ import annotations
 
 import hashlib
-import os
-import re
 from pathlib import Path
 from typing import Any
 
@@ -17,17 +15,17 @@ from scenes.camera import check_size, load_camera
 from scenes.catalogue import scene_path
 from scenes.errors import InputError
 from scenes.lights import load_light
-from scenes.media import Fog, load_medium, take_fog
+from scenes.materials import load_material
+from scenes.media import Fog, load_medium, load_phase, take_fog
 from scenes.mesh_files import sha256
-from scenes.mitsuba_setup import mitsuba, parser_config
 from scenes.model import Array, Mesh, Scene
-from scenes.shapes import FROM_FILE, Shape, instance_of, load_shape
+from scenes.parsing import READ_FILES, drop, parse
+from scenes.shapes import Shape, instance_of, load_shape
+from scenes.textures import load_texture
 from scenes.xml_nodes import Node
 
 # Mitsuba's parse_file takes parameters beside arguments of these names
 RESERVED = ("config", "filename")
-# plugins that read a file
-FILES = (*FROM_FILE, "bitmap")
 
 
 def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters: object) -> Scene:
@@ -54,7 +52,7 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
             raise InputError(f"The parameter {name} of {path} was given no value; give one or leave it out.")
         if name in RESERVED:
             raise InputError(f"{path} cannot be given a parameter called {name}; rename it in the scene.")
-    state = _parse(path, texts)
+    state = parse(path, texts)
     root = Node(state, 0)
     replaced = tuple(node.plugin for node in root.children("Integrator") if node.plugin != "volpath")
     sensor = _only(root.children("Sensor"), "sensor", path)
@@ -67,9 +65,10 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
     if not lights:
         raise InputError(f"{path} has no light: add a <emitter type='point'> or a <emitter type='spot'>.")
     meshes, normals = _meshes(shapes, fog, path.parent)
-    # definitions that others refer to; who uses them has read them
-    root.children("Medium", "BSDF", "PhaseFunction", "Texture")
+    _check_definitions(root, path.parent)
     root.finish()
+    drop(root, "Integrator")
+    drop(sensor, "Sampler")
     return Scene(
         name=path.stem,
         path=path,
@@ -87,49 +86,19 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
     )
 
 
-def _parse(path: Path, parameters: dict[str, str]) -> Any:
-    config = parser_config()
-    import mitsuba.parser as parser
-
-    # <path> elements add folders to Mitsuba's list, which would serve every later scene of this process too
-    resolver = mitsuba().file_resolver()
-    before = [str(folder) for folder in resolver]
-    try:
-        state = parser.parse_file(config, str(path), **parameters)
-        parser.transform_all(config, state)
-        _find_in(list(resolver)[: len(list(resolver)) - len(before)], state)
-        # text of another encoding passes the parser, and breaks whoever reads it
-        for node in state.nodes:
-            node.props.id()
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is not UTF-8; save it as UTF-8.") from None
-    except (RuntimeError, ValueError) as error:
-        raise InputError(_sentence(path, str(error))) from None
-    finally:
-        resolver.clear()
-        for folder in before:
-            resolver.append(folder)
-    return state
-
-
-def _find_in(folders: list[Any], state: Any) -> None:
-    """Spell out the path of each file that is found in one of the folders that the scene names by <path>."""
-    for node in state.nodes:
-        name = node.props["filename"] if node.props.plugin_name() in FILES and "filename" in node.props else None
-        if isinstance(name, str) and not Path(name).is_absolute():
-            found = [path for path in (Path(str(folder), name) for folder in folders) if os.path.isfile(path)]
-            if found:
-                node.props["filename"] = str(found[0].absolute())
-
-
-def _sentence(path: Path, message: str) -> str:
-    """Boil a message of Mitsuba's parser down to one sentence that names the file."""
-    lines = [re.sub(r"^\[[^\]]*\]\s*", "", line.strip()) for line in message.splitlines()]
-    if any("unused parameters" in line for line in lines):
-        names = ", ".join(line.removeprefix("- ").split("=")[0] for line in lines if line.startswith("- "))
-        return f"{path} has no use for the parameter {names} with these settings; correct its name or leave it out."
-    innermost = [line for line in lines if line][-1].removeprefix("Error while loading ").rstrip(".")
-    return innermost + "." if path.name in innermost else f"{path}: {innermost}."
+def _check_definitions(root: Node, folder: Path) -> None:
+    """Hold definitions that others may refer to against the same rules, used or not: Mitsuba makes them all."""
+    for node in root.children("Medium"):
+        load_medium(node)
+    for node in root.children("PhaseFunction"):
+        load_phase(node)
+    for node in root.children("Texture"):
+        load_texture(node, folder)
+    for node in root.children("BSDF"):
+        if node.plugin == "null":
+            node.finish()
+        else:
+            load_material(node, folder)
 
 
 def _only(nodes: list[Node], what: str, path: Path) -> Node:
@@ -193,7 +162,7 @@ def _digest(state: Any) -> str:
 
     paths = {}
     for node in state.nodes:
-        if node.props.plugin_name() in FILES and "filename" in node.props:
+        if node.props.plugin_name() in READ_FILES and "filename" in node.props:
             # by content: the same mesh in another folder is the same scene
             paths[node] = node.props["filename"]
             node.props["filename"] = sha256(paths[node])

@@ -38,7 +38,7 @@ def load_medium(node: Node) -> tuple[analytic.Medium, Phase]:
     node.ignore("sample_emitters", "has_spectral_extinction")
     node.finish()
     try:
-        return analytic.Medium.from_albedo(albedo, colour * scale), _phase(phase_node)
+        return analytic.Medium.from_albedo(albedo, colour * scale), load_phase(phase_node)
     except ValueError as error:
         raise node.refuse(f"cannot be used: {error}.") from None
 
@@ -61,7 +61,14 @@ PHASES: dict[str, tuple[str, Callable[[Node], dict]]] = {
 }
 
 
-def _phase(node: Node | None) -> Phase:
+def load_phase(node: Node | None) -> Phase:
+    """Read a phase function; Mitsuba's default is isotropic.
+
+    Raises
+    ------
+    InputError
+        Another plugin, a property that airlight does not know, or values that it cannot have.
+    """
     if node is None:
         return analytic.phase("isotropic")
     if node.plugin not in PHASES:

@@ -7,6 +7,7 @@ bytes: sizes that a header declares are checked against the file's before anythi
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
@@ -24,6 +25,10 @@ PLY_TYPES = {
 }
 PLY_FORMATS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
 INDEX_NAMES = ("vertex_index", "vertex_indices")
+# what Mitsuba reads as the end of a number or not at all, where Python goes on: the two would see different meshes
+ODD_OBJ_LINE = re.compile(rb"^[ \t]*(?:v|vt|vn|f)[ \t][^\n]*?(?:[\v\f\0_]|\r(?!\n|\Z))", re.MULTILINE)
+# as long as Mitsuba takes them, comments too
+LONG_OBJ_LINE = re.compile(rb"[^\n]{1024}")
 REEXPORT = "export it again from its modelling program"
 
 
@@ -81,10 +86,8 @@ def _check(path: Path, mesh: Triangles) -> None:
         _refuse(path, "every face has zero area", "check the scale it was exported with")
 
 
-def _indices(path: Path, values: NDArray) -> NDArray[np.uint32]:
+def _indices(values: NDArray) -> NDArray[np.uint32]:
     """Indices as uint32, the out-of-range ones (negative, or beyond 32 bits) turned into the largest uint32."""
-    if values.dtype.kind == "f" and not np.array_equal(values, np.floor(values)):
-        _refuse(path, "a face has an index that is not a whole number")
     limit = np.iinfo(np.uint32).max
     return np.where((values < 0) | (values > limit), limit, values).astype(np.uint32)
 
@@ -114,7 +117,7 @@ def _read_ply(path: Path, data: bytes) -> Triangles:
     if (face["count"] != 3).any():
         row = int(np.flatnonzero(face["count"] != 3)[0])
         _refuse(path, f"face {row} is not a triangle, and Mitsuba reads only triangles from a PLY", "triangulate it")
-    faces = _indices(path, face["index"])
+    faces = _indices(face["index"])
     return Triangles(vertices, faces, columns("nx ny nz"), columns("u v", "s t"))
 
 
@@ -132,7 +135,7 @@ def _ply_header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
         match line.split():
             case [] | ["comment" | "obj_info", *_]:
                 pass
-            case ["format", name, "1.0"] if name in PLY_FORMATS:
+            case ["format", name, "1.0"] if name in PLY_FORMATS and not encoding and not elements:
                 encoding = name
             case ["element", name, rows] if rows.isascii() and rows.isdigit() and len(rows) < 19:
                 elements.append(Element(name, int(rows), []))
@@ -170,7 +173,14 @@ def _ply_binary(path: Path, data: bytes, start: int, elements: list[Element], or
             _refuse(path, f"cut short: its header declares {element.rows} rows of '{element.name}'", "copy it again")
         tables[element.name] = np.frombuffer(data, row, element.rows, start)
         start += element.rows * row.itemsize
+    _check_end(path, len(data) - start, tables)
     return tables
+
+
+def _check_end(path: Path, left: int, tables: dict[str, NDArray]) -> None:
+    # polygons leave something over too, and are named as such later
+    if left > 0 and (tables["face"]["count"] == 3).all():
+        _refuse(path, "it goes on after the last row that its header declares")
 
 
 def _ply_text(path: Path, text: bytes, elements: list[Element]) -> dict[str, NDArray]:
@@ -183,25 +193,44 @@ def _ply_text(path: Path, text: bytes, elements: list[Element]) -> dict[str, NDA
         if stop > len(tokens):
             _refuse(path, f"cut short: its header declares {element.rows} rows of '{element.name}'", "copy it again")
         try:
+            if b"_" in b"".join(tokens[start:stop]):
+                raise ValueError("which Python takes between digits")
             values = np.fromiter(map(float, tokens[start:stop]), np.float64, stop - start).reshape(element.rows, width)
-        except ValueError:
-            _refuse(path, f"a value of its element '{element.name}' is not a number")
+            for column in _whole_columns(element):
+                np.fromiter(map(int, tokens[start + column : stop : width]), np.float64, element.rows)
+        except (ValueError, OverflowError):
+            _refuse(
+                path,
+                f"a value of its element '{element.name}' is not a number, or not a whole number where it should be",
+            )
         # float64 holds every 32-bit index exactly
         row = np.dtype([(field[0], "f8", *field[2:]) for field in element.fields])
         tables[element.name] = values.view(row).reshape(element.rows)
         start = stop
-    if start < len(tokens) and (tables["face"]["count"] == 3).all():
-        _refuse(path, "it goes on after the last row that its header declares")
+    _check_end(path, len(tokens) - start, tables)
     return tables
+
+
+def _whole_columns(element: Element) -> list[int]:
+    """Columns of a text row that are declared as whole numbers."""
+    kinds = [kind for field in element.fields for kind in [field[1]] * (field[2] if len(field) == 3 else 1)]
+    return [column for column, kind in enumerate(kinds) if kind[0] in "iu"]
 
 
 # --- OBJ -------------------------------------------------------------------------------------------------------------
 
 
 def _read_obj(path: Path, data: bytes) -> Triangles:
+    for pattern, fault in (
+        (ODD_OBJ_LINE, "holds a lone carriage return, a form feed, a zero byte or an underscore"),
+        (LONG_OBJ_LINE, "is longer than 1023 characters, which Mitsuba does not read"),
+    ):
+        if found := pattern.search(data):
+            number_of_line = data.count(b"\n", 0, found.end()) + 1
+            _refuse(path, f"line {number_of_line} {fault}")
     kept: dict[bytes, list[list[bytes]]] = {b"v": [], b"vt": [], b"vn": [], b"f": []}
-    for line in data.splitlines():
-        keyword, *values = line.split() or [b""]
+    for line in data.split(b"\n"):
+        keyword, *values = line.partition(b"#")[0].split() or [b""]
         if keyword in kept:
             kept[keyword].append(values)
     if not kept[b"f"]:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from scenes.messages import one_sentence
 from scenes.mitsuba_setup import mitsuba
 from scenes.model import Texture
 from scenes.xml_nodes import Node
@@ -51,8 +52,7 @@ def _pixels(node: Node, path: Path, raw: bool) -> NDArray[np.float32]:
         pixels = _read(path, raw, path.stat().st_mtime_ns)
     except Exception as error:
         # what Mitsuba's readers of seven formats raise is of many types
-        reason = " ".join(str(error).split()).rstrip(".")
-        raise node.refuse(f"cannot read the picture {path}: {reason}.") from None
+        raise node.refuse(f"cannot use its picture; {one_sentence(path, str(error))}") from None
     if max(pixels.shape[:2]) > LARGEST_SIDE or 0 in pixels.shape:
         raise node.refuse(f"names {path}, of {pixels.shape[1]} x {pixels.shape[0]} pixels; use 1 to {LARGEST_SIDE}.")
     if not np.isfinite(pixels).all() or (pixels < 0).any():

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenes.errors import InputError
+from scenes.messages import readable
 from scenes.mitsuba_setup import mitsuba
 
 REQUIRED: Any = object()
@@ -44,7 +45,7 @@ class Node:
 
     def refuse(self, why: str) -> InputError:
         """Make the error that names this node's place and plugin; the caller raises it."""
-        return InputError(f"{self.where}: {self.kind.lower()} plugin '{self.plugin}' {why}")
+        return InputError(f"{self.where}: {self.kind.lower()} plugin '{readable(self.plugin)}' {readable(why)}")
 
     @contextmanager
     def located(self) -> Iterator[None]:
