@@ -56,8 +56,11 @@ def environment() -> dict[str, str]:
 
 def describe_scene(scene: Scene) -> dict[str, str]:
     """What a row of results says of its scene; the parameters as a JSON object, whatever signs their values hold."""
+    from scenes.manifest import frozen_version
+
     return {
         "scene": scene.name,
+        "scene_version": frozen_version(scene),
         "scene_digest": scene.digest,
         "parameters": json.dumps(scene.parameters),
         "size": f"{scene.camera.width} {scene.camera.height}",

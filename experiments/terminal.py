@@ -85,7 +85,7 @@ def announce_scene(scene: Scene) -> None:
     if scene.stand_ins:
         warn(
             f"{scene.name}: a procedural stand-in serves for {', '.join(scene.stand_ins)}; "
-            "set AIRLIGHT_MESH_DIR to a folder with the mesh to use the real one."
+            "set AIRLIGHT_MESH_DIR to a folder with the mesh to use the real one (`airlight meshes list`)."
         )
 
 

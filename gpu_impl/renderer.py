@@ -75,14 +75,23 @@ class Renderer:
         InputError
             The technique cannot take this scene.
         """
+        import moderngl
+
         technique.check()
         technique.check_scene(self.scene)
         for light in self.scene.lights:
             check_map_size(self.device, light, technique.shadow_map)
-        if technique.shadow_map not in self._views:
-            self._views[technique.shadow_map] = self._see(technique.shadow_map)
-        view = self._views[technique.shadow_map]
-        texture = self._scatter(technique, view)
+        try:
+            if technique.shadow_map not in self._views:
+                self._views[technique.shadow_map] = self._see(technique.shadow_map)
+            view = self._views[technique.shadow_map]
+            texture = self._scatter(technique, view)
+        except moderngl.Error as error:
+            camera = self.scene.camera
+            raise InputError(
+                f"OpenGL cannot draw {camera.width} x {camera.height} pixels with {technique.shadow_map} texels of "
+                f"shadow map ({' '.join(str(error).split())}): make one of them smaller."
+            ) from None
         surface, scattering, gbuffer = (_read(t) for t in (view.surface, texture, view.gbuffer.normal_and_distance))
         texture.release()
         if not (np.isfinite(surface).all() and np.isfinite(scattering).all()):

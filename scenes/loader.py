@@ -27,6 +27,9 @@ from scenes.xml_nodes import Node
 # Mitsuba's parse_file takes parameters beside arguments of these names
 RESERVED = ("config", "filename")
 
+# Some GB of vertices, and of shadow maps at 1,024 texels: more would take minutes and then the machine.
+MOST_TRIANGLES, MOST_LIGHTS = 20_000_000, 64
+
 
 def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters: object) -> Scene:
     """Load a scene.
@@ -62,6 +65,8 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
     medium, phase = load_medium(fog.medium)
     emitters = root.children("Emitter")
     lights = tuple(load_light(node, fog.medium, fog.boundary is not None, path.parent) for node in emitters)
+    if len(emitters) > MOST_LIGHTS:
+        raise emitters[MOST_LIGHTS].refuse(f"is one light more than the {MOST_LIGHTS} that airlight takes.")
     if not lights:
         raise InputError(f"{path} has no light: add a <emitter type='point'> or a <emitter type='spot'>.")
     meshes, normals = _meshes(shapes, fog, path.parent)
@@ -125,6 +130,7 @@ def _meshes(shapes: list[Node], fog: Fog, folder: Path) -> tuple[tuple[Mesh, ...
     for index, group in groups.items():
         for shape in members[index]:
             keep(shape, f"{group.props.id()}.{shape.mesh.name}")
+    total = 0
     for node in shapes:
         if node.plugin == "shapegroup":
             continue
@@ -137,13 +143,25 @@ def _meshes(shapes: list[Node], fog: Fog, folder: Path) -> tuple[tuple[Mesh, ...
                 members[held.index] = _members(held, folder)
             to_world = node.transform()
             node.finish()
+            total += sum(len(shape.mesh.faces) for shape in members[held.index])
+            _check_total(node, total)
             meshes += [instance_of(shape.mesh, to_world, f"{name}.{shape.mesh.name}") for shape in members[held.index]]
         else:
             fog.check_outside(node)
             shape = load_shape(node, folder, name)
+            total += len(shape.mesh.faces)
+            _check_total(node, total)
             keep(shape, name)
             meshes.append(shape.mesh)
     return tuple(meshes), normals
+
+
+def _check_total(node: Node, triangles: int) -> None:
+    if triangles > MOST_TRIANGLES:
+        raise node.refuse(
+            f"brings the scene to {triangles:,} triangles (a sphere has 81,920), more than the {MOST_TRIANGLES:,} that "
+            "airlight takes; leave some out."
+        )
 
 
 def _members(group: Node, folder: Path) -> list[Shape]:

@@ -164,7 +164,7 @@ def _bounded(node: Node, scene_folder: Path) -> tuple[Node, Boundary]:
 
 def _bsdf_plugin(node: Node) -> str:
     """Plugin of a shape's BSDF, which stays unread; empty where it has none."""
-    unread = list(node.unread)
+    unread = dict(node.unread)
     found = node.children("BSDF")
     node.unread = unread
     return found[0].plugin if found else ""

@@ -133,8 +133,10 @@ def _ply_header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
     elements: list[Element] = []
     for line in data[:end].decode("latin-1").splitlines()[1:]:
         match line.split():
-            case [] | ["comment" | "obj_info", *_]:
+            case [] | ["comment", *_]:
                 pass
+            case ["obj_info", *_]:
+                _refuse(path, "its PLY header has an 'obj_info' line, which Mitsuba does not read", "make it a comment")
             case ["format", name, "1.0"] if name in PLY_FORMATS and not encoding and not elements:
                 encoding = name
             case ["element", name, rows] if rows.isascii() and rows.isdigit() and len(rows) < 19:

@@ -43,6 +43,8 @@ def mitsuba() -> Any:
     for variant in (asked,) if asked else VARIANTS:
         if variant_works(mi, variant, llvm):
             mi.set_variant(variant)
+            # its warnings are about what airlight reads for itself, and they tear the progress bars
+            mi.set_log_level(mi.LogLevel.Error)
             return mi
     raise InputError(f"The Mitsuba variant {asked} does not work here; `airlight doctor` says why.")
 

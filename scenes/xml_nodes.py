@@ -33,7 +33,8 @@ class Node:
         self.props = state.nodes[index].props
         self.plugin: str = self.props.plugin_name()
         self.kind: str = str(state.nodes[index].type).rsplit(".", 1)[-1]
-        self.unread = list(self.props.keys())
+        # in the order of the file
+        self.unread = dict.fromkeys(self.props.keys())
         self._raw = state.nodes[index]
 
     @property
@@ -61,7 +62,7 @@ class Node:
             if default is REQUIRED:
                 raise self.refuse(f"needs the property '{name}'.")
             return default
-        self.unread.remove(name)
+        del self.unread[name]
         return self.props[name]
 
     def number(self, name: str, default: Any = REQUIRED) -> float:
@@ -154,7 +155,7 @@ class Node:
             child = Node(self.state, value.index())
             # Mitsuba goes by the kind too: a name such as <film name="film"> has no bearing
             if child.kind in kinds:
-                self.unread.remove(name)
+                del self.unread[name]
                 found.append(child)
         return found
 
@@ -167,7 +168,8 @@ class Node:
 
     def ignore(self, *names: str) -> None:
         """Mark properties as read that have no bearing on what airlight computes."""
-        self.unread = [name for name in self.unread if name not in names]
+        for name in names:
+            self.unread.pop(name, None)
 
     def finish(self) -> None:
         """Refuse whatever nobody read.
