@@ -69,10 +69,10 @@ def convex_hull(triangles: Triangles) -> Boundary:
     planes = np.column_stack([normals, (normals * a).sum(axis=1)])
     if (planes[:, 3] < planes[:, :3] @ corners.mean(axis=0)).all():
         raise ValueError("its faces look inward, so its interior is all of space: turn them or leave flip_normals out")
-    if (corners @ planes[:, :3].T > planes[:, 3] + TOLERANCE * size).any():
-        raise ValueError("it is not convex; use a cube, a sphere or another convex shape")
     grid = np.round(planes / np.array([1e-4, 1e-4, 1e-4, 1e-4 * size])).astype(np.int64)
     planes = planes[np.unique(grid, axis=0, return_index=True)[1]]
     if len(planes) > MOST_PLANES:
-        raise ValueError(f"it has {len(planes)} faces, and at most {MOST_PLANES} are taken; use a sphere or a cube")
+        raise ValueError(f"its faces lie in {len(planes)} planes, and at most {MOST_PLANES} are taken; use a sphere")
+    if (corners @ planes[:, :3].T > planes[:, 3] + TOLERANCE * size).any():
+        raise ValueError("it is not convex; use a cube, a sphere or another convex shape")
     return Boundary(planes, None)

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from spoilt_media import MORE_CASES
 from spoilt_scenes import CASES, GOOD, PAINT, SPOT
 
 from scenes.catalogue import scene_path
 from scenes.errors import InputError
 from scenes.loader import load
+from scenes.mitsuba_setup import mitsuba
 from scenes.triangles import Triangles, ply_bytes
 
 
@@ -34,6 +36,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     broken = corners.copy()
     broken[1, 1] = np.nan
     (tmp_path / "nan.ply").write_bytes(ply_bytes(Triangles(broken, side)))
+    # a pyramid whose tip points into it
+    (tmp_path / "dented.obj").write_text(
+        "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 2 0\nv 0 0.5 0\n"
+        "f 1 4 5\nf 4 3 5\nf 3 2 5\nf 2 1 5\nf 4 1 6\nf 3 4 6\nf 2 3 6\nf 1 2 6\n"
+    )
+    (tmp_path / "good.ply").write_bytes(ply_bytes(Triangles(corners, side)))
+    for name, value in {"picture": 0.5, "nan": np.nan, "bright": 1.5}.items():
+        mitsuba().Bitmap(np.full((2, 2, 3), value, np.float32)).write(str(tmp_path / f"{name}.exr"))
     (tmp_path / "cloud.ply").write_bytes(ply_bytes(Triangles(corners, side[:0])))
     (tmp_path / "noise.ply").write_bytes(np.random.default_rng(5).bytes(4000))
     return tmp_path
@@ -45,9 +55,9 @@ def test_the_scene_that_the_cases_spoil_is_good(folder: Path) -> None:
     assert load(path).name == "good"
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", CASES | MORE_CASES)
 def test_a_bad_scene_is_refused_in_one_sentence(folder: Path, case: str) -> None:
-    old, new, words = CASES[case]
+    old, new, words = (CASES | MORE_CASES)[case]
     assert GOOD.count(old) == 1
     path = folder / "bad.xml"
     path.write_text(GOOD.replace(old, new))
