@@ -152,7 +152,7 @@ def test_many_levels_of_nesting_are_refused(tmp_path: Path) -> None:
     ("parameters", "words"),
     [
         ({"sigma": 1}, "no use for the parameter $sigma "),
-        ({"g": 0.3}, "no use for the parameter $g "),
+        ({"k": 0.3}, "no use for the parameter $k "),
         ({"scene": 1}, "no use for the parameter $scene "),
         ({"": 1}, "no use for the parameter"),
         ({"sigma_t": "thick"}, "could not parse floating point value"),
