@@ -103,7 +103,7 @@ def _mitsuba() -> list[Finding]:
 
 
 def _meshes() -> list[Finding]:
-    from scenes.mesh_files import available
+    from scenes.meshes.files import available
 
     folder = os.environ.get("AIRLIGHT_MESH_DIR", "not set")
     meshes = available()

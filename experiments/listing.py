@@ -7,7 +7,7 @@ from rich.table import Table
 from experiments.suite import shipped as shipped_suites
 from gpu_impl.techniques import AIRLIGHT_MODELS, TECHNIQUES, VISIBILITIES
 from scenes.catalogue import FOLDER, shipped
-from scenes.mesh_files import available
+from scenes.meshes.files import available
 
 
 def listing() -> list[Table]:

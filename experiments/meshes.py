@@ -10,10 +10,10 @@ from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, Trans
 from rich.table import Table
 
 from experiments.console import notices, say
-from scenes import mesh_catalogue, procedural
-from scenes.mesh_fetch import Watcher
-from scenes.mesh_files import VARIABLE, MeshFile, available, sha256
-from scenes.mesh_notes import read_note
+from scenes.meshes import catalogue, procedural
+from scenes.meshes.fetch import Watcher
+from scenes.meshes.files import VARIABLE, MeshFile, available, sha256
+from scenes.meshes.notes import read_note
 
 
 def describe_meshes() -> list[dict[str, Any]]:
@@ -30,7 +30,7 @@ def describe_meshes() -> list[dict[str, Any]]:
 
 
 def _describe(mesh: MeshFile) -> dict[str, Any]:
-    known, recipe = mesh_catalogue.MESHES.get(mesh.name), procedural.RECIPES.get(mesh.name)
+    known, recipe = catalogue.MESHES.get(mesh.name), procedural.RECIPES.get(mesh.name)
     bytes_ = sha256(mesh.path) if mesh.path.is_file() else None
     row: dict[str, Any] = {"name": mesh.name, "from": mesh.origin, "path": str(mesh.path), "sha256": bytes_}
     if mesh.origin == "generated" and recipe:
@@ -45,11 +45,11 @@ def _describe(mesh: MeshFile) -> dict[str, Any]:
     return {
         **row,
         "what": known.what,
-        "reference_copy": mesh_catalogue.is_reference_copy(mesh),
+        "reference_copy": catalogue.is_reference_copy(mesh),
         "credit": known.credit,
         "licence": known.licence,
         "page": known.page,
-        "get": mesh_catalogue.how_to_get(mesh.name),
+        "get": catalogue.how_to_get(mesh.name),
         "steps": note["steps"] if note else [],
     }
 

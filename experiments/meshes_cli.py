@@ -9,7 +9,7 @@ import typer
 from scenes.errors import InputError
 
 if TYPE_CHECKING:
-    from scenes.mesh_fetch import Fetched
+    from scenes.meshes.fetch import Fetched
 
 meshes_app = typer.Typer(
     name="meshes",
@@ -52,8 +52,8 @@ def fetch(
     """
     from experiments.console import say
     from experiments.meshes import FetchWatcher
-    from scenes.mesh_catalogue import MESHES
-    from scenes.mesh_fetch import check_names, fetch, fetchable
+    from scenes.meshes.catalogue import MESHES
+    from scenes.meshes.fetch import check_names, fetch, fetchable
 
     if bool(names) == all_:
         raise InputError(f"Name the meshes to fetch, or give --all for {', '.join(fetchable())}.")

@@ -76,7 +76,7 @@ def describe_files(scene: Scene) -> dict[str, str]:
     A shipped scene is called by its name, any other by its absolute path; meshes and pictures are "name:sha256", a JSON
     list. Credits are those that the meshes' terms ask for.
     """
-    from scenes.mesh_catalogue import credit
+    from scenes.meshes.catalogue import credit
 
     credits = {credit(mesh.file) for mesh in scene.meshes if mesh.file}
     return {
@@ -96,7 +96,7 @@ def scene_file(scene: Scene) -> str:
 
 def file_hashes(scene: Scene) -> dict[str, Path]:
     """Mesh and picture files that a scene is made from: "name:sha256" to where each was found."""
-    from scenes.mesh_files import sha256
+    from scenes.meshes.files import sha256
 
     paths = [Path(node.props["filename"]) for node in scene.parsed.nodes if "filename" in node.props]
     return {f"{path.name}:{sha256(path)}": path for path in paths}

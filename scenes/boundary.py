@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scenes.triangles import Triangles
+from scenes.meshes.triangles import Triangles
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from scenes.errors import InputError
 from scenes.lights import load_light
 from scenes.materials import load_material
 from scenes.media import Fog, load_medium, load_phase, take_fog
-from scenes.mesh_files import sha256
+from scenes.meshes.files import sha256
 from scenes.model import Array, Mesh, Scene
 from scenes.parsing import READ_FILES, drop, parse
 from scenes.shapes import Shape, instance_of, load_shape

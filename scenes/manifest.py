@@ -14,7 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 from xml.etree import ElementTree
 
-from scenes.mesh_files import sha256
+from scenes.meshes.files import sha256
 from scenes.model import Scene
 
 PATH = Path(__file__).with_name("manifest.toml")
@@ -27,7 +27,7 @@ class FrozenMesh:
     Attributes
     ----------
     reference : str or None    the mesh that the scene means, where it is not of our making
-    ours : str or None         the one that scenes.procedural makes: the mesh itself, or a stand-in
+    ours : str or None         the one that scenes.meshes.procedural makes: the mesh itself, or a stand-in
     """
 
     reference: str | None = None

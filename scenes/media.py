@@ -12,9 +12,9 @@ import analytic
 from analytic.phase import Phase
 from scenes import boundary
 from scenes.boundary import Boundary
+from scenes.meshes.triangles import Triangles
 from scenes.model import Camera
 from scenes.shapes import SUPPORTED, load_shape
-from scenes.triangles import Triangles
 from scenes.xml_nodes import Node
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from analytic import Medium
 from analytic.phase import Phase
 from scenes.boundary import Boundary
-from scenes.mesh_files import MeshFile
+from scenes.meshes.files import MeshFile
 
 Array = NDArray[Any]
 

@@ -10,11 +10,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from scenes import tessellate
 from scenes.materials import load_material
-from scenes.mesh_files import MeshFile, find_mesh, read_mesh
+from scenes.meshes import tessellate
+from scenes.meshes.files import MeshFile, find_mesh, read_mesh
+from scenes.meshes.triangles import Triangles, vertex_normals
 from scenes.model import Array, Mesh, Texture
-from scenes.triangles import Triangles, vertex_normals
 from scenes.xml_nodes import Node, is_similarity
 
 Matrix = NDArray[np.float64]

@@ -15,8 +15,8 @@ from pathlib import Path
 from scenes import InputError, load
 from scenes.catalogue import FOLDER, shipped
 from scenes.manifest import PATH, FrozenMesh, Manifest, manifest, text_sha256
-from scenes.mesh_files import sha256
-from scenes.procedural import RECIPES
+from scenes.meshes.files import sha256
+from scenes.meshes.procedural import RECIPES
 from scenes.replacing import replacing
 
 

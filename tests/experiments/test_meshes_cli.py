@@ -15,13 +15,13 @@ import trimesh
 from mesh_server import serving, tar, whole
 
 from experiments.meshes_cli import meshes_app
-from scenes import mesh_catalogue
 from scenes.errors import InputError
-from scenes.mesh_catalogue import MESHES, KnownMesh, Original
-from scenes.mesh_files import VARIABLE
-from scenes.mesh_steps import Step
-from scenes.procedural import RECIPES
-from scenes.triangles import Triangles, ply_bytes
+from scenes.meshes import catalogue
+from scenes.meshes.catalogue import MESHES, KnownMesh, Original
+from scenes.meshes.files import VARIABLE
+from scenes.meshes.procedural import RECIPES
+from scenes.meshes.steps import Step
+from scenes.meshes.triangles import Triangles, ply_bytes
 
 BALL = trimesh.creation.icosphere(subdivisions=2)
 BALL_PLY = ply_bytes(Triangles(np.asarray(BALL.vertices, np.float32), np.asarray(BALL.faces[:-3], np.uint32)))
@@ -67,7 +67,7 @@ def test_the_list_has_every_mesh_and_says_where_it_is_from(
     assert (rows["spot.ply"]["from"], rows["spot.ply"]["reference_copy"]) == ("mesh folder", False)
     assert rows["own.ply"]["licence"] is None
     real = hashlib.sha256(BALL_PLY).hexdigest()
-    monkeypatch.setitem(mesh_catalogue.MESHES, "spot.ply", KnownMesh("a cow", "C", "L", "o", "http://p", real))
+    monkeypatch.setitem(catalogue.MESHES, "spot.ply", KnownMesh("a cow", "C", "L", "o", "http://p", real))
     spot = listed(meshes)["spot.ply"]
     assert (spot["reference_copy"], spot["sha256"], spot["path"]) == (True, real, str(folder / "spot.ply"))
 
@@ -84,7 +84,7 @@ def test_fetch_shows_terms_steps_and_path_and_the_list_then_knows(meshes: Run, m
         server.answers["/ball.tar.gz"] = whole(tar({"recon/ball.ply": BALL_PLY}))
         original = Original(f"{server.address}/ball.tar.gz", "ball.ply", hashlib.sha256(BALL_PLY).hexdigest())
         ball = KnownMesh("a ball", "Somebody", "for research", "o", "http://p", "0" * 64, original, (Step("repair"),))
-        monkeypatch.setattr(mesh_catalogue, "MESHES", {"ball.ply": ball})
+        monkeypatch.setattr(catalogue, "MESHES", {"ball.ply": ball})
         text = meshes("fetch", "--all")
         assert text.startswith("ball.ply: a ball. Credit: Somebody. Licence: for research.\n")
         assert "ball.ply: repair()\n" in text

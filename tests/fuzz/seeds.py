@@ -10,8 +10,8 @@ import numpy as np
 from spoilt_scenes import GOOD
 
 from scenes.catalogue import FOLDER, scene_path, shipped
+from scenes.meshes.triangles import Triangles, ply_bytes
 from scenes.mitsuba_setup import mitsuba
-from scenes.triangles import Triangles, ply_bytes
 
 _FOG = """
   <default name="sigma_t" value="0.1"/>

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from scenes.errors import InputError
-from scenes.mesh_readers import read_mesh
+from scenes.meshes.readers import read_mesh
 from scenes.mitsuba_setup import mitsuba
 
 OBJ = "v 0 1 0\nv -1 0 1\nv 1 0 1\nv 5 5 5\nf 1 2 3\n"

@@ -12,9 +12,9 @@ import pytest
 from reference.mitsuba_scene import instantiate
 from scenes.catalogue import FOLDER, shipped
 from scenes.loader import load
+from scenes.meshes.triangles import Triangles, ply_bytes
 from scenes.mitsuba_setup import mitsuba
 from scenes.model import Mesh, Scene
-from scenes.triangles import Triangles, ply_bytes
 
 mi = mitsuba()
 

@@ -13,8 +13,8 @@ from spoilt_scenes import CASES, GOOD, PAINT, SPOT
 from scenes.catalogue import scene_path
 from scenes.errors import InputError
 from scenes.loader import load
+from scenes.meshes.triangles import Triangles, ply_bytes
 from scenes.mitsuba_setup import mitsuba
-from scenes.triangles import Triangles, ply_bytes
 
 
 def refusal(scene: object, /, **settings: object) -> str:

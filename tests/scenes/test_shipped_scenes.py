@@ -19,11 +19,11 @@ from scenes import manifest as manifest_module
 from scenes.catalogue import FOLDER, shipped
 from scenes.loader import load
 from scenes.manifest import FrozenMesh, frozen_version, manifest
-from scenes.mesh_catalogue import MESHES
-from scenes.mesh_files import sha256
+from scenes.meshes.catalogue import MESHES
+from scenes.meshes.files import sha256
+from scenes.meshes.procedural import RECIPES
+from scenes.meshes.triangles import Triangles, ply_bytes
 from scenes.model import Scene
-from scenes.procedural import RECIPES
-from scenes.triangles import Triangles, ply_bytes
 
 SCRIPTS = FOLDER.parent / "scripts"
 PHASES = sorted(path.stem for path in (FOLDER / "phase").glob("*.xml"))

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenes import mesh_catalogue
-from scenes.mesh_catalogue import MESHES, KnownMesh, credit
-from scenes.mesh_files import VARIABLE, find_mesh
-from scenes.mesh_notes import note_path
-from scenes.mesh_steps import STEPS
-from scenes.procedural import RECIPES
-from scenes.triangles import Triangles, ply_bytes
+from scenes.meshes import catalogue
+from scenes.meshes.catalogue import MESHES, KnownMesh, credit
+from scenes.meshes.files import VARIABLE, find_mesh
+from scenes.meshes.notes import note_path
+from scenes.meshes.procedural import RECIPES
+from scenes.meshes.steps import STEPS
+from scenes.meshes.triangles import Triangles, ply_bytes
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32)
 BALL_PLY = ply_bytes(Triangles(CORNERS, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], np.uint32)))
@@ -25,8 +25,8 @@ BALL_PLY = ply_bytes(Triangles(CORNERS, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3
 def test_credit_goes_by_bytes_then_by_the_note_then_by_the_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    catalogue = {"ball.ply": KnownMesh("a ball", "Somebody", "for research", "a page", "http://page", "0" * 64)}
-    monkeypatch.setattr(mesh_catalogue, "MESHES", catalogue)
+    known = {"ball.ply": KnownMesh("a ball", "Somebody", "for research", "a page", "http://page", "0" * 64)}
+    monkeypatch.setattr(catalogue, "MESHES", known)
     folder = tmp_path / "meshes"
     folder.mkdir()
     (folder / "ball.ply").write_bytes(BALL_PLY)
@@ -35,8 +35,8 @@ def test_credit_goes_by_bytes_then_by_the_note_then_by_the_name(
     assert credit(find_mesh("ball.ply", tmp_path)) == "ball.ply: Somebody (for research), by its name alone"
     assert credit(find_mesh("mine.ply", tmp_path)) is None
     assert credit(find_mesh("ball.ply", folder)) is None  # a scene's own ball
-    copy = dataclasses.replace(mesh_catalogue.MESHES["ball.ply"], reference_sha256=hashlib.sha256(BALL_PLY).hexdigest())
-    mesh_catalogue.MESHES["ball.ply"] = copy
+    copy = dataclasses.replace(catalogue.MESHES["ball.ply"], reference_sha256=hashlib.sha256(BALL_PLY).hexdigest())
+    catalogue.MESHES["ball.ply"] = copy
     assert credit(find_mesh("ball.ply", tmp_path)) == "ball.ply: Somebody (for research)"
     assert credit(find_mesh("ball.ply", folder)) == "ball.ply: Somebody (for research)"
     for text in ("{", "[]", '{"sha256": "0"}'):

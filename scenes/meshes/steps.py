@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from importlib.metadata import version
 from typing import Any
 
-from scenes.catmull_clark import catmull_clark
 from scenes.errors import InputError
-from scenes.mesh_repair import repair, weld
-from scenes.polygons import Polygons, cut_into_triangles, of_triangles
+from scenes.meshes.catmull_clark import catmull_clark
+from scenes.meshes.polygons import Polygons, cut_into_triangles, of_triangles
+from scenes.meshes.repair import repair, weld
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from random import Random
 
-from scenes.implicit import Bead, Bounds, Part, Point, along, limb, surface, unit
-from scenes.triangles import Triangles
+from scenes.meshes.implicit import Bead, Bounds, Part, Point, along, limb, surface, unit
+from scenes.meshes.triangles import Triangles
 
 BOUNDS: Bounds = ((-1.0, 0.0, -1.0), (1.0, 2.0, 1.0))
 # about half as wide as a wire at its thinnest; the grid breaks what is thinner than a cell

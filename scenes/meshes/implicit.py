@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from scenes.triangles import Triangles
+from scenes.meshes.triangles import Triangles
 
 Point = tuple[float, float, float]
 Bounds = tuple[Point, Point]

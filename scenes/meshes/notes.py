@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from scenes.mesh_files import sha256
+from scenes.meshes.files import sha256
 
 # what others read from a note
 KEYS = {"credit", "licence", "original_sha256", "steps", "sha256"}

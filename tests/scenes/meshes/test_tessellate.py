@@ -9,9 +9,9 @@ import mitsuba
 import numpy as np
 import pytest
 
-from scenes import tessellate
 from scenes.errors import InputError
-from scenes.triangles import Triangles, ply_bytes
+from scenes.meshes import tessellate
+from scenes.meshes.triangles import Triangles, ply_bytes
 
 P0, P1, RADIUS = [0.3, -0.2, 0.1], [-0.4, 0.5, 0.9], 0.45
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-from scenes.implicit import (
+from scenes.meshes.implicit import (
     Bead,
     Bounds,
     Capsule,
@@ -19,7 +19,7 @@ from scenes.implicit import (
     surface,
     unit,
 )
-from scenes.triangles import Triangles
+from scenes.meshes.triangles import Triangles
 
 # of dragon_97k_fixed.ply and dragon_res3_fixed.ply; y is up, the head looks towards -x. The sketch below is in 1/1000.
 FINE_BOUNDS: Bounds = ((-0.1083, 0.0527, -0.0504), (0.0966, 0.1972, 0.0412))

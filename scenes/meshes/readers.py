@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenes.errors import InputError
-from scenes.triangles import Triangles
+from scenes.meshes.triangles import Triangles
 
 # PLY's scalar types under both of their names, as numpy's kind and size
 PLY_TYPES = {

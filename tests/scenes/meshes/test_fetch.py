@@ -15,16 +15,17 @@ import pytest
 import trimesh
 from mesh_server import Answer, MeshServer, serving, stalled, tar, whole, zipped
 
-from scenes import archive_member, mesh_catalogue, mesh_fetch
-from scenes.catmull_clark import catmull_clark
 from scenes.errors import InputError
-from scenes.mesh_catalogue import KnownMesh, Original, credit
-from scenes.mesh_fetch import Fetched, Watcher, fetch
-from scenes.mesh_files import VARIABLE, find_mesh, read_mesh
-from scenes.mesh_notes import note_path
-from scenes.mesh_steps import STEPS, Step
-from scenes.polygons import as_triangles, read_polygons
-from scenes.triangles import Triangles, ply_bytes
+from scenes.meshes import archive_member, catalogue
+from scenes.meshes import fetch as mesh_fetch
+from scenes.meshes.catalogue import KnownMesh, Original, credit
+from scenes.meshes.catmull_clark import catmull_clark
+from scenes.meshes.fetch import Fetched, Watcher, fetch
+from scenes.meshes.files import VARIABLE, find_mesh, read_mesh
+from scenes.meshes.notes import note_path
+from scenes.meshes.polygons import as_triangles, read_polygons
+from scenes.meshes.steps import STEPS, Step
+from scenes.meshes.triangles import Triangles, ply_bytes
 
 BALL = trimesh.creation.icosphere(subdivisions=3)
 # a ball with a hole in it
@@ -54,13 +55,13 @@ def data(server: MeshServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(mesh_fetch, "TIMEOUT", 0.3)
     ball = Original(f"{server.address}/ball.tar.gz", "ball.ply", hashlib.sha256(BALL_PLY).hexdigest())
     box = Original(f"{server.address}/box.zip", "box.obj", hashlib.sha256(BOX_OBJ).hexdigest())
-    catalogue = {
+    known = {
         "ball.ply": known(ball, (Step("repair"),)),
         "coarse_ball.ply": known(ball, (Step("decimate", {"target": 600}), Step("repair"))),
         "box.ply": known(box, (Step("catmull_clark", {"levels": 2}),)),
         "by_hand.ply": known(None, ()),
     }
-    monkeypatch.setattr(mesh_catalogue, "MESHES", catalogue)
+    monkeypatch.setattr(catalogue, "MESHES", known)
     return tmp_path / "data" / "airlight" / "meshes"
 
 
@@ -114,8 +115,8 @@ def test_a_mesh_that_is_there_is_not_fetched_again_unless_its_recipe_changed(ser
     assert len(server.asked) == 1
     (data / "ball.ply").write_bytes(BALL_PLY)  # no longer what the note speaks of
     assert [mesh.fresh for mesh in fetched("ball.ply")] == [True]
-    changed = dataclasses.replace(mesh_catalogue.MESHES["ball.ply"], steps=(Step("decimate", {"target": 500}),))
-    mesh_catalogue.MESHES["ball.ply"] = changed
+    changed = dataclasses.replace(catalogue.MESHES["ball.ply"], steps=(Step("decimate", {"target": 500}),))
+    catalogue.MESHES["ball.ply"] = changed
     assert [mesh.fresh for mesh in fetched("ball.ply")] == [True]
     assert len(server.asked) == 3
 

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from scenes.catmull_clark import catmull_clark
 from scenes.errors import InputError
-from scenes.hole_filling import close_holes
-from scenes.mesh_files import VARIABLE, read_mesh
-from scenes.mesh_repair import repair, weld
-from scenes.mesh_steps import Step, decimate, run_steps
-from scenes.polygons import Polygons, as_triangles, cut_into_triangles, of_triangles, read_polygons
+from scenes.meshes.catmull_clark import catmull_clark
+from scenes.meshes.files import VARIABLE, read_mesh
+from scenes.meshes.hole_filling import close_holes
+from scenes.meshes.polygons import Polygons, as_triangles, cut_into_triangles, of_triangles, read_polygons
+from scenes.meshes.repair import repair, weld
+from scenes.meshes.steps import Step, decimate, run_steps
 
 CUBE = """
 v -1 -1 -1

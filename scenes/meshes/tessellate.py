@@ -1,7 +1,7 @@
 """Mitsuba's analytic shapes as triangles with exact vertex normals, in the shape's local space.
 
 Chord error, the largest distance between a triangle and the surface it stands for, is under 1e-4 of the radius for
-every round shape; the values below are those measured in tests/scenes/test_tessellate.py.
+every round shape; the values below are those measured in tests/scenes/meshes/test_tessellate.py.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenes.errors import InputError
-from scenes.triangles import Triangles
+from scenes.meshes.triangles import Triangles
 
 SIDES = 256  # of a circle: chord error 1 - cos(pi / 256) = 7.5e-5 of the radius
 SUBDIVISIONS = 6  # of the icosahedron: 81,920 triangles, chord error 7.1e-5 of the radius

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from scenes import dragon, standins, wire_mesh
-from scenes.implicit import Capsule, Part, smooth_curve, surface
-from scenes.procedural import RECIPES, torus
-from scenes.triangles import Triangles, ply_bytes, vertex_normals
+from scenes.meshes import dragon, standins, wire_mesh
+from scenes.meshes.implicit import Capsule, Part, smooth_curve, surface
+from scenes.meshes.procedural import RECIPES, torus
+from scenes.meshes.triangles import Triangles, ply_bytes, vertex_normals
 
 BOUNDS = {
     "torus.ply": ((-1.35, -0.35, -1.35), (1.35, 0.35, 1.35)),

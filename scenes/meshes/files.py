@@ -11,11 +11,11 @@ from typing import Literal
 
 import platformdirs
 
-from scenes import procedural
 from scenes.errors import InputError
-from scenes.mesh_readers import read_mesh
+from scenes.meshes import procedural
+from scenes.meshes.readers import read_mesh
+from scenes.meshes.triangles import Triangles, ply_bytes, vertex_normals
 from scenes.replacing import CACHE_CURE, make_folder, replacing
-from scenes.triangles import Triangles, ply_bytes, vertex_normals
 
 __all__ = ["MeshFile", "Triangles", "available", "find_mesh", "read_mesh", "sha256", "vertex_normals"]
 
@@ -49,7 +49,8 @@ def find_mesh(filename: str, scene_folder: Path) -> MeshFile:
     """The file that `filename` of a scene stands for.
 
     In this order: `filename` itself, relative to the scene's folder; its bare name in the folders of
-    AIRLIGHT_MESH_DIR; in the user's data folder for airlight; made by scenes.procedural, in the user's cache folder.
+    AIRLIGHT_MESH_DIR; in the user's data folder for airlight; made by scenes.meshes.procedural, in the
+    user's cache folder.
     An absolute path is taken at its word: a missing file is an error, never replaced.
 
     Raises

@@ -11,10 +11,10 @@ import mitsuba
 import numpy as np
 import pytest
 
-from scenes import procedural
 from scenes.errors import InputError
-from scenes.mesh_files import Triangles, available, find_mesh, read_mesh, sha256, vertex_normals
-from scenes.triangles import ply_bytes
+from scenes.meshes import procedural
+from scenes.meshes.files import Triangles, available, find_mesh, read_mesh, sha256, vertex_normals
+from scenes.meshes.triangles import ply_bytes
 
 HEADER = """ply
 format {format} 1.0

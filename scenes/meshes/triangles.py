@@ -40,7 +40,7 @@ def vertex_normals(vertices: NDArray[np.floating], faces: NDArray[np.integer]) -
 
     Source: Thuermer and Wuethrich 1998, "Computing Vertex Normals from Polygonal Facets", which Mitsuba uses too.
     In float64: Mitsuba's float32 sums differ by at most 8e-5 rad on Stanford's dragon, at slivers, and by 3e-7 rad on
-    our own meshes (tests/scenes/test_mesh_files.py).
+    our own meshes (tests/scenes/meshes/test_files.py).
     """
     corners = np.asarray(vertices, np.float64)[faces]  # (F, 3 corners, 3)
     edges = np.roll(corners, -1, axis=1) - corners  # edge i leaves corner i

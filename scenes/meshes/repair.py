@@ -5,7 +5,7 @@ triangle, or with three, makes a shadow volume that does not close.
 
 What is done: vertices at one place become one; faces that are there twice, or once from either side, cancel; where an
 edge has more triangles than two, those of the two largest patches stay; the largest shell stays; holes are closed
-(scenes.hole_filling). Written here because the libraries that do it carry the AGPL or the GPL.
+(scenes.meshes.hole_filling). Written here because the libraries that do it carry the AGPL or the GPL.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from scenes.hole_filling import close_holes
-from scenes.polygons import Polygons, cut_into_triangles, of_triangles
+from scenes.meshes.hole_filling import close_holes
+from scenes.meshes.polygons import Polygons, cut_into_triangles, of_triangles
 
 Indices = NDArray[np.int64]
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenes.errors import InputError
-from scenes.mesh_readers import read_mesh
-from scenes.triangles import Triangles
+from scenes.meshes.readers import read_mesh
+from scenes.meshes.triangles import Triangles
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def as_triangles(mesh: Polygons) -> Triangles:
 def read_polygons(path: Path) -> Polygons:
     """The polygons of an OBJ file or the triangles of a PLY file.
 
-    Apart from `scenes.mesh_readers`, which hands out triangles as Mitsuba cuts them: subdivision needs the polygons,
+    Apart from `scenes.meshes.readers`, which hands out triangles as Mitsuba cuts them: subdivision needs the polygons,
     and the vertices as the file shares them, whatever texture coordinates and normals its corners name.
 
     Raises

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenes.errors import InputError
-from scenes.polygons import Polygons
+from scenes.meshes.polygons import Polygons
 
 
 def catmull_clark(mesh: Polygons, levels: int) -> Polygons:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scenes import dragon, standins, wire_mesh
-from scenes.triangles import Triangles
+from scenes.meshes import dragon, standins, wire_mesh
+from scenes.meshes.triangles import Triangles
 
 
 @dataclass(frozen=True)

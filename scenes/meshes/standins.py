@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from random import Random
 
-from scenes.implicit import Bead, Bounds, Capsule, Part, Point, limb, mirrored, surface
-from scenes.triangles import Triangles
+from scenes.meshes.implicit import Bead, Bounds, Capsule, Part, Point, limb, mirrored, surface
+from scenes.meshes.triangles import Triangles
 
 # bounding boxes of the meshes' files
 YEAHRIGHT_CC2: Bounds = ((-8.3047, 0.0755, -13.5102), (8.1928, 15.0662, 15.2493))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scenes.mesh_files import MeshFile, sha256
-from scenes.mesh_notes import read_note
-from scenes.mesh_steps import Step
+from scenes.meshes.files import MeshFile, sha256
+from scenes.meshes.notes import read_note
+from scenes.meshes.steps import Step
 
 
 @dataclass(frozen=True)

@@ -12,16 +12,16 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from scenes import mesh_catalogue
-from scenes.archive_member import unpack_member
 from scenes.errors import InputError
-from scenes.mesh_catalogue import KnownMesh, Original
-from scenes.mesh_files import VARIABLE, user_folder
-from scenes.mesh_notes import note_path, read_note
-from scenes.mesh_steps import run_steps
-from scenes.polygons import as_triangles, read_polygons
+from scenes.meshes import catalogue
+from scenes.meshes.archive_member import unpack_member
+from scenes.meshes.catalogue import KnownMesh, Original
+from scenes.meshes.files import VARIABLE, user_folder
+from scenes.meshes.notes import note_path, read_note
+from scenes.meshes.polygons import as_triangles, read_polygons
+from scenes.meshes.steps import run_steps
+from scenes.meshes.triangles import ply_bytes
 from scenes.replacing import make_folder, replacing
-from scenes.triangles import ply_bytes
 
 # of silence, not of the whole download
 TIMEOUT = 30.0  # [s]
@@ -48,7 +48,7 @@ class Fetched:
 
     Attributes
     ----------
-    path : Path    the PLY file; its note is beside it (scenes.mesh_notes)
+    path : Path    the PLY file; its note is beside it (scenes.meshes.notes)
     note : dict    what the note says
     fresh : bool   False where it was there already, from the same original by the same steps
     """
@@ -60,16 +60,16 @@ class Fetched:
 
 def fetchable() -> list[str]:
     """Names of the meshes that `fetch` can get."""
-    return [name for name, known in mesh_catalogue.MESHES.items() if known.original]
+    return [name for name, known in catalogue.MESHES.items() if known.original]
 
 
 def check_names(names: Iterable[str]) -> None:
     """Raise InputError for the first name that cannot be fetched, with what to do instead."""
     for name in names:
-        if name not in mesh_catalogue.MESHES:
-            known = ", ".join(mesh_catalogue.MESHES)
+        if name not in catalogue.MESHES:
+            known = ", ".join(catalogue.MESHES)
             raise InputError(f"'{name}' is no mesh that can be fetched; those that scenes name are {known}.")
-        mesh = mesh_catalogue.MESHES[name]
+        mesh = catalogue.MESHES[name]
         if mesh.original is None:
             raise InputError(
                 f"{name} comes from {mesh.origin} ({mesh.page}), but no original of it with a known hash, so it cannot "
@@ -92,7 +92,7 @@ def fetch(names: Iterable[str], watcher: Watcher) -> Iterator[Fetched]:
     check_names(wanted)
     by_address: dict[str, list[tuple[str, KnownMesh, Original]]] = {}
     for name in wanted:
-        known, found = mesh_catalogue.MESHES[name], _already_there(name)
+        known, found = catalogue.MESHES[name], _already_there(name)
         if found:
             yield found
         elif known.original:
@@ -109,7 +109,7 @@ def fetch(names: Iterable[str], watcher: Watcher) -> Iterator[Fetched]:
 
 
 def _already_there(name: str) -> Fetched | None:
-    path, known = user_folder() / name, mesh_catalogue.MESHES[name]
+    path, known = user_folder() / name, catalogue.MESHES[name]
     note = read_note(path) if path.is_file() else None
     if note is None or known.original is None or note.get("original_sha256") != known.original.sha256:
         return None

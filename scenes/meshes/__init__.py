@@ -1,0 +1,1 @@
+"""Meshes: where they come from, how they are read, mended and made."""
