@@ -55,13 +55,13 @@ def data(server: MeshServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(mesh_fetch, "TIMEOUT", 0.3)
     ball = Original(f"{server.address}/ball.tar.gz", "ball.ply", hashlib.sha256(BALL_PLY).hexdigest())
     box = Original(f"{server.address}/box.zip", "box.obj", hashlib.sha256(BOX_OBJ).hexdigest())
-    known = {
+    meshes = {
         "ball.ply": known(ball, (Step("repair"),)),
         "coarse_ball.ply": known(ball, (Step("decimate", {"target": 600}), Step("repair"))),
         "box.ply": known(box, (Step("catmull_clark", {"levels": 2}),)),
         "by_hand.ply": known(None, ()),
     }
-    monkeypatch.setattr(catalogue, "MESHES", known)
+    monkeypatch.setattr(catalogue, "MESHES", meshes)
     return tmp_path / "data" / "airlight" / "meshes"
 
 
