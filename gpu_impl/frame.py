@@ -22,6 +22,7 @@ class Frame:
     lit_intervals : (H, W)     pieces that the visibility strategy reported
     technique : Technique
     gl : GLInfo
+    scene_digest : str         which scene it is a picture of; see `scenes.model.Scene`
     """
 
     surface: np.ndarray
@@ -30,6 +31,7 @@ class Frame:
     lit_intervals: np.ndarray
     technique: Technique
     gl: GLInfo
+    scene_digest: str
 
     @property
     def composite(self) -> np.ndarray:

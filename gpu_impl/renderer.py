@@ -95,7 +95,10 @@ class Renderer:
         surface, scattering, gbuffer = (_read(t) for t in (view.surface, texture, view.gbuffer.normal_and_distance))
         texture.release()
         if not (np.isfinite(surface).all() and np.isfinite(scattering).all()):
-            raise InputError(f"{technique.name} draws {self.scene.path} with pixels that are not finite.")
+            raise InputError(
+                f"{technique.name} draws {self.scene.path} with pixels that are not finite: bring its intensities, "
+                "lengths and coefficients nearer to 1."
+            )
         far = self.scene.camera.rays()[2]
         return Frame(
             surface=surface[..., :3],
@@ -104,6 +107,7 @@ class Renderer:
             lit_intervals=scattering[..., 3],
             technique=technique,
             gl=self.device.info,
+            scene_digest=self.scene.digest,
         )
 
     def milliseconds(self, technique: Technique, frames: int = 5) -> float:

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from numbers import Integral
 from typing import Any
 
 from gpu_impl.quadrature_nodes import gauss_legendre_glsl
 from scenes.errors import InputError
+from scenes.messages import readable
 from scenes.model import Scene
 
 DOWNSAMPLES = (1, 2, 4, 8)
@@ -80,6 +82,11 @@ class Technique:
         """Raise InputError where a part is unknown or a setting cannot be used."""
         _choose("visibility", self.visibility, VISIBILITIES)
         _choose("airlight model", self.airlight, AIRLIGHT_MODELS)
+        for setting in ("steps", "shadow_map", "downsample"):
+            value = getattr(self, setting)
+            # True is an int to Python, and to nobody else
+            if isinstance(value, bool) or not isinstance(value, Integral):
+                raise InputError(f"{setting} is {value!r}; use a whole number.")
         if not 1 <= self.steps <= MOST_STEPS:
             raise InputError(f"steps is {self.steps}; use 1 to {MOST_STEPS}.")
         if not 1 <= self.shadow_map <= 16384:
@@ -146,4 +153,4 @@ def find_technique(name: str, **settings: int | None) -> Technique:
 
 def _choose(what: str, name: str, known: Iterable[str]) -> None:
     if name not in known:
-        raise InputError(f"There is no {what} '{name}'; the known ones are {', '.join(known)}.")
+        raise InputError(f"There is no {what} '{readable(name)}'; the known ones are {', '.join(known)}.")

@@ -14,6 +14,7 @@ from reference.convergence import Estimate, Progress, converge
 from reference.estimators import Equiangular, FilmVolpath, default_estimator
 from reference.goal import Goal
 from reference.integrator import mi
+from scenes.errors import InputError
 from scenes.model import Scene
 
 LAYERS = ("composite", "scattering", "surface")
@@ -30,12 +31,19 @@ class Reference:
     recipe : dict          all that decides it: scene, estimator and version, variant, goal, Mitsuba's version
     pixel_filter : str     "centre" or "box"
     from_cache : bool
+    not_kept : str         why it could not be kept in the cache; empty where it is there
     """
 
     estimate: Estimate
     recipe: dict[str, Any]
     pixel_filter: str
     from_cache: bool
+    not_kept: str = ""
+
+    @property
+    def scene_digest(self) -> str:
+        """Which scene it is the reference of; see `scenes.model.Scene`."""
+        return str(self.recipe["scene"])
 
     @property
     def surface(self) -> np.ndarray:
@@ -84,7 +92,8 @@ def estimate_reference(scene: Scene, goal: Goal, report: Callable[[Progress], No
     Raises
     ------
     InputError
-        The estimate is zero everywhere or not finite, or the cache cannot be written.
+        The estimate is zero everywhere or not finite, or the cache's folder cannot be written. Where only its disk is
+        full, which shows after the work, the reference is returned all the same and says so.
     """
     # the class says all that a cached reference has to agree with; Mitsuba's scene is made only for a new one
     estimator = default_estimator()
@@ -93,8 +102,12 @@ def estimate_reference(scene: Scene, goal: Goal, report: Callable[[Progress], No
         return Reference(_unpack(*entry), recipe, estimator.pixel_filter, from_cache=True)
     cache.check_writable()
     estimate = converge(estimator(scene), goal, report)
-    cache.store(recipe, *_pack(estimate))
-    return Reference(estimate, recipe, estimator.pixel_filter, from_cache=False)
+    not_kept = ""
+    try:
+        cache.store(recipe, *_pack(estimate))
+    except InputError as error:
+        not_kept = str(error)
+    return Reference(estimate, recipe, estimator.pixel_filter, from_cache=False, not_kept=not_kept)
 
 
 def _recipe(scene: Scene, estimator: type[Equiangular] | type[FilmVolpath], goal: Goal) -> dict[str, Any]:

@@ -84,7 +84,7 @@ class Equiangular(PixelCentres):
     """The main estimator: the integrator `single_scattering` with stratified distances."""
 
     name = "equiangular"
-    version = 7
+    version = 8
     pixel_filter = "centre"
     layers: tuple[str, ...] = ("scattering",)
 

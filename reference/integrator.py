@@ -32,7 +32,7 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
 
     The radiance of a ray is the sum of
 
-    - `surface`: light that one diffuse bounce sends to the eye, attenuated on both legs; deterministic, since the
+    - `surface`: light that one reflection sends to the eye, attenuated on both legs; deterministic, since the
       lights have no extent;
     - `scattering`: light that the fog scatters once. The distance is sampled in proportion to 1 / d^2, d the distance
       to the light (Kulla and Fajardo 2012, section 4), which leaves no singularity to the estimator; transmittance is
@@ -61,7 +61,7 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
         return [f"{part}.{channel}" for part in ("surface", "scattering") for channel in "RGB"]
 
     def surface(self, scene: Any, ray: Any, path: FogPath, medium: Any, active: Any = True) -> Any:
-        """Direct light on the surface that the ray hits, as it reaches the eye.
+        """Direct light on the surface that the ray hits, as it reaches the eye after one reflection.
 
         Parameters
         ----------
@@ -107,7 +107,7 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
             ds, weight = emitter.sample_direction(mei, mi.Point2f(0.5), active)
             there, through_fog = active, t
             if bounded:
-                # a body that is not convex is left and entered again
+                # the plugin takes bodies that are not convex too, which a ray leaves and enters again
                 before = mi.Ray3f(ray)
                 before.maxt = t
                 so_far = bounded_path(scene, before, medium is not None, active)

@@ -36,6 +36,11 @@ def load_camera(node: Node, size: tuple[int, int] | None) -> tuple[Camera, Node 
         raise node.refuse(f"has near_clip = {near} and far_clip = {far}; it should be 0 < near_clip < far_clip.")
     tan_half_x = _tan_half_x(node, width / height)
     medium = node.child("Medium")
+    # nothing moves while the shutter is open
+    node.ignore("shutter_open", "shutter_close")
+    for name in ("principal_point_offset_x", "principal_point_offset_y"):
+        if node.number(name, 0.0):
+            raise node.refuse(f"has a '{name}', which is not supported; centre the camera.")
     node.children("Sampler")
     node.finish()
     return Camera(to_world, tan_half_x, near, far, width, height), medium
@@ -54,6 +59,9 @@ def _film_size(sensor: Node, film: Node | None, size: tuple[int, int] | None) ->
         width, height = size
     # how the film stores its pixels and reconstructs them: airlight evaluates pixel centres and writes float32 EXR
     film.ignore("file_format", "pixel_format", "component_format", "banner", "compensate", "sample_border")
+    for name in ("crop_width", "crop_height", "crop_offset_x", "crop_offset_y"):
+        if name in film.unread:
+            raise film.refuse(f"has a '{name}', which is not supported; leave the crop out.")
     film.children("ReconstructionFilter")
     film.finish()
     film.props["width"], film.props["height"] = width, height
@@ -69,14 +77,16 @@ def check_size(size: tuple[int, int]) -> None:
 
 def _tan_half_x(node: Node, aspect: float) -> float:
     """Tangent of half the horizontal field of view, from Mitsuba's `fov` and `fov_axis`, or from its `focal_length`."""
-    if "focal_length" in node.unread:
+    if "fov" not in node.unread:
         return _tan_half_x_of_lens(node, aspect)
+    if "focal_length" in node.unread:
+        raise node.refuse("has a 'focal_length' and a 'fov'; leave one out.")
     fov = node.number("fov")
     tan_half = float(np.tan(np.radians(fov) / 2))
     # near 180 degrees float32 has no digits left
     if not (0 < fov < 180 and 1e-6 < tan_half < 1e3):
         raise node.refuse(f"has 'fov' = {fov}, which should lie between 0 and 180 degrees.")
-    axis = node.take("fov_axis", "x")
+    axis = node.text("fov_axis", "x")
     if axis in ("smaller", "larger"):
         axis = "y" if (aspect > 1) == (axis == "smaller") else "x"
     if axis not in ("x", "y", "diagonal"):
@@ -86,9 +96,7 @@ def _tan_half_x(node: Node, aspect: float) -> float:
 
 def _tan_half_x_of_lens(node: Node, aspect: float) -> float:
     """As above, from the focal length of a lens before a 36 x 24 mm film, whose diagonal the image keeps."""
-    if {"fov", "fov_axis"} & set(node.unread):
-        raise node.refuse("has a 'focal_length' and a 'fov' or 'fov_axis'; leave one out.")
-    text = node.text("focal_length")
+    text = node.text("focal_length", "50mm")
     try:
         focal_length = float(text.removesuffix("mm"))
     except ValueError:

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from scenes.errors import InputError
+from scenes.file_names import check_name
 
 FOLDER = Path(__file__).parent
 
@@ -17,9 +18,12 @@ def shipped() -> list[str]:
 
 def scene_path(scene: str | Path) -> Path:
     """Find a scene's file: any path, or the name of a shipped scene."""
+    check_name(scene)
     asked = Path(scene)
     # os.path's answer to a name that is too long or holds a zero byte is no, where Path's is an exception
     if os.path.isfile(asked):
+        # its folder's name too: what a scene names is looked for beside it
+        check_name(asked.absolute())
         return asked
     if asked.name == str(scene) and asked.name.removesuffix(".xml") in shipped():
         return FOLDER / f"{asked.name.removesuffix('.xml')}.xml"

@@ -46,11 +46,15 @@ def load_light(node: Node, fog: Node, bounded: bool, scene_folder: Path) -> Ligh
     if node.plugin == "point":
         position = node.point("position", position)
     elif node.plugin == "directional":
+        if abs(np.linalg.norm(to_world[:3, 2]) - 1) > 1e-4:
+            # Mitsuba's own integrators disagree about such a light
+            raise node.refuse("has a 'to_world' that scales; use <lookat> or a 'direction'.")
         to_world = _directed(node, to_world)
     else:
         beam_width, cutoff_angle = _cone(node)
         if nested := node.nested("texture"):
             texture = load_texture(nested, scene_folder)
+    node.ignore("sampling_weight")
     strength = "irradiance" if node.plugin == "directional" else "intensity"
     intensity = node.color(strength, 1.0)
     if not intensity.any():

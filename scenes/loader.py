@@ -27,6 +27,8 @@ from scenes.xml_nodes import Node
 # Mitsuba's parse_file takes parameters beside arguments of these names
 RESERVED = ("config", "filename")
 
+# properties of the scene that change how Mitsuba works, and not what it draws
+OF_NO_BEARING = ("embree_use_robust_intersections", "allow_thread_reordering")
 # Some GB of vertices, and of shadow maps at 1,024 texels: more would take minutes and then the machine.
 MOST_TRIANGLES, MOST_LIGHTS = 20_000_000, 64
 
@@ -57,6 +59,7 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
             raise InputError(f"{path} cannot be given a parameter called {name}; rename it in the scene.")
     state = parse(path, texts)
     root = Node(state, 0)
+    root.ignore(*OF_NO_BEARING)
     replaced = tuple(node.plugin for node in root.children("Integrator") if node.plugin != "volpath")
     sensor = _only(root.children("Sensor"), "sensor", path)
     camera, around = load_camera(sensor, size)
@@ -64,16 +67,19 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
     fog = take_fog(sensor, camera, around, shapes, path.parent)
     medium, phase = load_medium(fog.medium)
     emitters = root.children("Emitter")
-    lights = tuple(load_light(node, fog.medium, fog.boundary is not None, path.parent) for node in emitters)
     if len(emitters) > MOST_LIGHTS:
         raise emitters[MOST_LIGHTS].refuse(f"is one light more than the {MOST_LIGHTS} that airlight takes.")
+    lights = tuple(load_light(node, fog.medium, fog.boundary is not None, path.parent) for node in emitters)
     if not lights:
         raise InputError(f"{path} has no light: add a <emitter type='point'> or a <emitter type='spot'>.")
     meshes, normals = _meshes(shapes, fog, path.parent)
     _check_definitions(root, path.parent)
     root.finish()
+    # what airlight replaces is not made
     drop(root, "Integrator")
     drop(sensor, "Sampler")
+    for film in Node(state, sensor.index).children("Film"):
+        drop(film, "ReconstructionFilter")
     return Scene(
         name=path.stem,
         path=path,
@@ -140,15 +146,20 @@ def _meshes(shapes: list[Node], fog: Fog, folder: Path) -> tuple[tuple[Mesh, ...
             if held is None or held.plugin != "shapegroup":
                 raise node.refuse("should hold a <ref> to one shapegroup.")
             if held.index not in members:
-                members[held.index] = _members(held, folder)
+                # Mitsuba finds a group only where it stands by itself
+                raise held.refuse("stands inside an instance: move it out, give it an id and refer to it by <ref>.")
             to_world = node.transform()
             node.finish()
             total += sum(len(shape.mesh.faces) for shape in members[held.index])
             _check_total(node, total)
-            meshes += [instance_of(shape.mesh, to_world, f"{name}.{shape.mesh.name}") for shape in members[held.index]]
+            placed = [instance_of(shape.mesh, to_world, f"{name}.{shape.mesh.name}") for shape in members[held.index]]
+            for mesh in placed:
+                fog.check_faces(node, mesh)
+            meshes += placed
         else:
             fog.check_outside(node)
             shape = load_shape(node, folder, name)
+            fog.check_faces(node, shape.mesh)
             total += len(shape.mesh.faces)
             _check_total(node, total)
             keep(shape, name)
@@ -167,6 +178,8 @@ def _check_total(node: Node, triangles: int) -> None:
 def _members(group: Node, folder: Path) -> list[Shape]:
     """Shapes of a shapegroup, in its own space."""
     nodes = group.children("Shape")
+    if not nodes:
+        raise group.refuse("holds no shape; put one in it or leave it out.")
     group.finish()
     for number, node in enumerate(nodes):
         if not node.props.id():

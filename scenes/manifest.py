@@ -14,6 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 from xml.etree import ElementTree
 
+from scenes.errors import InputError
 from scenes.meshes.files import sha256
 from scenes.model import Scene
 
@@ -27,10 +28,13 @@ class FrozenMesh:
     Attributes
     ----------
     reference : str or None    the mesh that the scene means, where it is not of our making
+    fetched : str or None      what `airlight meshes fetch` made of its original, on the machine that froze it; None
+                               where no original was at hand
     ours : str or None         the one that scenes.meshes.procedural makes: the mesh itself, or a stand-in
     """
 
     reference: str | None = None
+    fetched: str | None = None
     ours: str | None = None
 
 
@@ -52,10 +56,24 @@ class Manifest:
 
 @lru_cache(maxsize=1)
 def manifest(path: Path = PATH) -> Manifest:
-    """Read the manifest."""
-    held = tomllib.loads(path.read_text(encoding="utf-8"))
-    meshes = {name: FrozenMesh(**hashes) for name, hashes in held["meshes"].items()}
-    return Manifest(held["versions"], held["files"], meshes)
+    """Read the manifest.
+
+    Raises
+    ------
+    InputError   it is missing, or is not what scripts/freeze_scenes.py writes
+    """
+    # a fifth of what drawing a small scene takes; only who asks for a version needs it
+    from pydantic import TypeAdapter, ValidationError
+
+    try:
+        held = tomllib.loads(path.read_text(encoding="utf-8"))
+        return TypeAdapter(Manifest).validate_python(held)
+    except OSError as error:
+        reason = f"cannot be read ({error.strerror})"
+    except (ValueError, RecursionError) as error:
+        where = error.errors()[0]["loc"] if isinstance(error, ValidationError) else ()
+        reason = f"is damaged ({'.'.join(map(str, where)) or error})"
+    raise InputError(f"{path} {reason}: restore it from the repository, or install airlight again with `make setup`.")
 
 
 def frozen_version(scene: Scene) -> str:
@@ -64,31 +82,45 @@ def frozen_version(scene: Scene) -> str:
     Returns
     -------
     str
-        "dragon 1 (reference meshes)", "dragon 1 (stand-ins)", "many_objects 1 (stand-ins for spot.ply)", "slit 1" for
-        a scene whose meshes are all our own; or "unfrozen: " and the reason
+        "dragon 1 (reference meshes)", "dragon 1 (fetched meshes)", "dragon 1 (stand-ins)"; where they are mixed, which
+        are not the reference: "many_objects 1 (fetched dragon_res3_fixed.ply; stand-ins for spot.ply)"; "slit 1" for a
+        scene whose meshes are all our own; or "unfrozen: " and the reason
+
+    Raises
+    ------
+    InputError
+        The manifest, or a file of the scene, cannot be read.
     """
     frozen = manifest()
     if scene.name not in frozen.versions:
         return "unfrozen: no shipped scene"
     name = f"{scene.name} {frozen.versions[scene.name]}"
-    if text_sha256(scene.path) != frozen.files[f"{scene.name}.xml"]:
+    if text_sha256(scene.path) != frozen.files.get(f"{scene.name}.xml"):
         return f"unfrozen: {scene.path.name} differs from {name}"
     for file in included(scene):
         if text_sha256(scene.path.parent / file) != frozen.files.get(file):
             return f"unfrozen: {file} differs from {name}"
-    reference: set[str] = set()
-    stand_ins: set[str] = set()
+    reference: list[str] = []
+    fetched: list[str] = []
+    stand_ins: list[str] = []
     for mesh in {mesh.file.name: mesh.file for mesh in scene.meshes if mesh.file}.values():
         known, found = frozen.meshes.get(mesh.name, FrozenMesh()), sha256(mesh.path)
-        if found not in (known.reference, known.ours):
+        if found not in (known.reference, known.fetched, known.ours):
             return f"unfrozen: {mesh.name} differs from {name}"
         if known.reference:
-            (reference if found == known.reference else stand_ins).add(mesh.name)
-    if not reference and not stand_ins:
-        return name
-    if not stand_ins:
-        return f"{name} (reference meshes)"
-    return f"{name} (stand-ins)" if not reference else f"{name} (stand-ins for {', '.join(sorted(stand_ins))})"
+            kind = {known.ours: stand_ins, known.fetched: fetched, known.reference: reference}[found]
+            kind.append(mesh.name)
+    return f"{name}{_kinds_of_meshes(reference, fetched, stand_ins)}"
+
+
+def _kinds_of_meshes(reference: list[str], fetched: list[str], stand_ins: list[str]) -> str:
+    """In brackets, of which kind the meshes are that are not of our making: of one kind, or which are not reference."""
+    if not fetched and not stand_ins:
+        return " (reference meshes)" if reference else ""
+    if not reference and not (fetched and stand_ins):
+        return " (fetched meshes)" if fetched else " (stand-ins)"
+    parts = (("fetched", fetched), ("stand-ins for", stand_ins))
+    return f" ({'; '.join(f'{kind} {', '.join(sorted(names))}' for kind, names in parts if names)})"
 
 
 def included(scene: Scene) -> list[str]:

@@ -13,7 +13,7 @@ from analytic.phase import Phase
 from scenes import boundary
 from scenes.boundary import Boundary
 from scenes.meshes.triangles import Triangles
-from scenes.model import Camera
+from scenes.model import Camera, Mesh
 from scenes.shapes import SUPPORTED, load_shape
 from scenes.xml_nodes import Node
 
@@ -96,6 +96,20 @@ class Fog:
     medium: Node
     boundary: Boundary | None
 
+    def check_faces(self, node: Node, mesh: Mesh) -> None:
+        """Refuse a surface that lies in a face of the shape that holds the medium: Mitsuba steps over it."""
+        if self.boundary is None or self.boundary.ball is not None:
+            return
+        size = float(np.linalg.norm(np.ptp(self.boundary.corners, axis=0)))
+        vertices = mesh.vertices.astype(np.float64)
+        for plane in self.boundary.planes:
+            flush = (np.abs(vertices @ plane[:3] - plane[3]) < boundary.TOLERANCE * size)[mesh.faces].all(axis=1)
+            others = self.boundary.planes[(self.boundary.planes != plane).any(axis=1)]
+            # a face that only shares an edge with the body has no area in common
+            inner = others - np.array([0, 0, 0, boundary.TOLERANCE * size])
+            if any(len(boundary.clipped(vertices[face], inner)) for face in mesh.faces[flush]):
+                raise node.refuse("lies in a face of the shape that holds the medium: move one of them a little.")
+
     def check_outside(self, shape: Node) -> None:
         """Take a surface's 'exterior', which may only repeat that it stands in fog that fills space."""
         exterior = shape.nested("exterior")
@@ -147,13 +161,15 @@ def _bounded(node: Node, scene_folder: Path) -> tuple[Node, Boundary]:
     medium = node.nested("interior")
     if medium is None or medium.kind != "Medium":
         raise node.refuse("has a null BSDF and holds no medium: put <ref name='interior' id='...'/> of one in it.")
+    if node.nested("exterior") is not None:
+        raise node.refuse("has an 'exterior' medium, and airlight takes none around a bounded one; leave it out.")
     for bsdf in node.children("BSDF"):
         bsdf.finish()
     shape = load_shape(node, scene_folder, "boundary")
     if node.plugin == "sphere":
         outward = shape.mesh.vertices - shape.to_world[:3, 3]
         if shape.mesh.normals is not None and (shape.mesh.normals * outward).sum() < 0:
-            raise node.refuse("looks inward, so its interior is all of space: leave flip_normals out.")
+            raise node.refuse(f"looks inward, so its interior is all of space: {boundary.INWARD}.")
         radius = float(np.cbrt(abs(np.linalg.det(shape.to_world[:3, :3]))))
         return medium, boundary.ball(shape.to_world[:3, 3], radius)
     try:
@@ -171,12 +187,26 @@ def _bsdf_plugin(node: Node) -> str:
 
 
 def _check_camera(sensor: Node, camera: Camera, says_inside: bool, holder: Boundary) -> None:
-    """Refuse a camera that does not say whether it is in the fog: Mitsuba would draw the fog wrongly without a word."""
-    # rays begin on the near plane, and the part of it that is seen is as convex as the body
-    x, y = (np.linspace(-1, 1, 9) * tan for tan in (camera.tan_half_x, camera.tan_half_y))
-    local = np.stack([*np.meshgrid(x, y), np.ones((9, 9))], axis=-1) * camera.near
-    inside = holder.contains(local @ camera.to_world[:3, :3].T + camera.origin)
-    if says_inside and not inside.all():
+    """Refuse a camera that does not say whether it is in the fog, or whose clip planes cut the fog.
+
+    Mitsuba would draw these wrongly without a word: the first without fog or with fog that does not end, the second
+    beyond its far plane.
+    """
+    # rays begin on this rectangle
+    corners = np.array([[x, y, 1.0] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    corners *= camera.near * np.array([camera.tan_half_x, camera.tan_half_y, 1.0])
+    near = corners @ camera.to_world[:3, :3].T + camera.origin
+    touched, inside = holder.meets(near), bool(holder.contains(near).all())
+    if touched and not inside:
+        raise sensor.refuse(
+            "has a near plane that cuts the shape that holds the medium: change near_clip or move the camera."
+        )
+    if says_inside and not inside:
         raise sensor.refuse("has a medium, and is outside the shape that holds it: take the medium out of the camera.")
-    if not says_inside and inside.any():
+    if not says_inside and inside:
         raise sensor.refuse("is inside the shape that holds the medium: put <ref id='...'/> of the medium in it.")
+    first, last = holder.depths(camera.origin, camera.to_world[:3, 2])
+    if not inside and first < camera.far < last:
+        raise sensor.refuse(
+            f"has a far plane that cuts the shape that holds the medium: use a far_clip above {last:.4g}."
+        )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import tempfile
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -38,13 +38,14 @@ def replacing(path: Path, cure: str = "make room there, or choose another place"
     """
     temporary = None
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem[:40]}-", suffix=f".part{path.suffix}")
-        os.close(handle)
-        temporary = Path(name)
+        # what a link points to is written, and the link stays
+        target = path.resolve() if path.is_symlink() else path
+        beside = target.with_name(f".{target.stem[:40]}-{secrets.token_hex(4)}.part{target.suffix}")
+        # the umask decides who may read it, as for any new file
+        os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        temporary = beside
         yield temporary
-        # mkstemp's files are for their owner alone
-        temporary.chmod(0o644)
-        temporary.replace(path)
+        temporary.replace(target)
     except OSError as error:
         raise InputError(f"{path} cannot be written ({error.strerror or error}): {cure}.") from None
     finally:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from scenes.meshes.files import MeshFile, sha256
-from scenes.meshes.notes import read_note
+from scenes.meshes.notes import Note, read_note
 from scenes.meshes.steps import Step
 
 
@@ -158,6 +158,15 @@ MESHES: dict[str, KnownMesh] = {
 }
 
 
+def made_as_now(note: Note) -> bool:
+    """Whether a fetched mesh was made from the original and by the steps that MESHES has for it today."""
+    known = MESHES.get(note.name)
+    if known is None or known.original is None or note.original_sha256 != known.original.sha256:
+        return False
+    recorded = [(record.step, record.parameters) for record in note.steps]
+    return recorded == [(step.name, step.parameters) for step in known.steps]
+
+
 def how_to_get(name: str) -> str:
     """What a person does to have a mesh of MESHES in place of its stand-in, in some words."""
     known = MESHES[name]
@@ -190,7 +199,7 @@ def credit(mesh: MeshFile) -> str | None:
         return None
     note = read_note(mesh.path)
     if note:
-        return f"{mesh.name}: {note['credit']} ({note['licence']})"
+        return f"{mesh.name}: {note.credit} ({note.licence})"
     known = MESHES.get(mesh.name)
     if known is None:
         return None

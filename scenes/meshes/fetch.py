@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import hashlib
-import json
+import os
+import re
+import socket
 import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from http.client import IncompleteRead
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 from scenes.errors import InputError
 from scenes.meshes import catalogue
 from scenes.meshes.archive_member import unpack_member
 from scenes.meshes.catalogue import KnownMesh, Original
-from scenes.meshes.files import VARIABLE, user_folder
-from scenes.meshes.notes import note_path, read_note
+from scenes.meshes.files import VARIABLE, MeshFile, user_folder
+from scenes.meshes.notes import Note, StepRecord, note_path, read_note
 from scenes.meshes.polygons import as_triangles, read_polygons
 from scenes.meshes.steps import run_steps
 from scenes.meshes.triangles import ply_bytes
@@ -49,12 +51,12 @@ class Fetched:
     Attributes
     ----------
     path : Path    the PLY file; its note is beside it (scenes.meshes.notes)
-    note : dict    what the note says
-    fresh : bool   False where it was there already, from the same original by the same steps
+    note : Note    what its note says; None for the reference copy, which the user put there
+    fresh : bool   False where it was there already: made from the same original by the same steps, or the reference copy
     """
 
     path: Path
-    note: dict[str, Any]
+    note: Note | None
     fresh: bool
 
 
@@ -81,12 +83,13 @@ def fetch(names: Iterable[str], watcher: Watcher) -> Iterator[Fetched]:
     """Put meshes into the user's data folder, one after the other as the result is read.
 
     Those that are there already come first; an archive that several need is downloaded once. A mesh that fails
-    leaves nothing behind, and those before it stay.
+    leaves nothing behind, and those before it stay. Only a mesh that was fetched, and whose recipe has changed since,
+    is replaced.
 
     Raises
     ------
-    InputError   a name is unknown or cannot be fetched, the download fails or is not what it should be, or a folder
-                 cannot be written
+    InputError   a name is unknown or cannot be fetched, another file has its place, the download fails or is not what
+                 it should be, or a folder cannot be written
     """
     wanted = list(dict.fromkeys(names))
     check_names(wanted)
@@ -109,13 +112,20 @@ def fetch(names: Iterable[str], watcher: Watcher) -> Iterator[Fetched]:
 
 
 def _already_there(name: str) -> Fetched | None:
-    path, known = user_folder() / name, catalogue.MESHES[name]
-    note = read_note(path) if path.is_file() else None
-    if note is None or known.original is None or note.get("original_sha256") != known.original.sha256:
+    """The mesh in the user's data folder, None where it has to be fetched; InputError where another file is there."""
+    path = user_folder() / name
+    # a link to nowhere too is somebody's
+    if not os.path.lexists(path):
         return None
-    recorded = [(record["step"], record["parameters"]) for record in note["steps"]]
-    as_now = recorded == [(step.name, step.parameters) for step in known.steps]
-    return Fetched(path, note, fresh=False) if as_now else None
+    if path.is_file():
+        note = read_note(path)
+        if note and note.name == name:
+            return Fetched(path, note, fresh=False) if catalogue.made_as_now(note) else None
+        if catalogue.is_reference_copy(MeshFile(name, path, "user data")):
+            return Fetched(path, None, fresh=False)
+    raise InputError(
+        f"{path} is there already and is not airlight's; move it away, for instance into a folder that {VARIABLE} names."
+    )
 
 
 def _download(address: str, folder: Path, watcher: Watcher) -> Path:
@@ -137,14 +147,27 @@ def _download(address: str, folder: Path, watcher: Watcher) -> Path:
 
 
 def _reason(error: Exception) -> str:
-    """The sentence at the bottom of what requests and urllib3 wrap."""
+    """In plain words, what is at the bottom of what requests and urllib3 wrap."""
     response = getattr(error, "response", None)
     if response is not None:
         return f"{response.status_code} {response.reason}"
-    while error.args and isinstance(error.args[0], Exception):
-        error = error.args[0]
-    inner = getattr(error, "reason", None)
-    return str(inner if isinstance(inner, Exception) else error).partition(">: ")[2] or str(error)
+    innermost: BaseException = error
+    while inner := _within(innermost):
+        innermost = inner
+    if isinstance(innermost, socket.gaierror):
+        name = re.search("resolve '(.+?)'", str(error))
+        return f"the name {name[1] if name else 'of its server'} cannot be resolved"
+    if isinstance(innermost, IncompleteRead):
+        return f"the connection was cut with {innermost.expected} bytes still to come"
+    # urllib3 begins with the connection's own address
+    plain = re.sub(r"^\w+\(host=.*?\): ", "", str(innermost)).rstrip(".")
+    return (isinstance(innermost, OSError) and innermost.strerror) or plain or type(innermost).__name__
+
+
+def _within(error: BaseException) -> BaseException | None:
+    """What an exception wraps: its `reason`, one of its arguments, or its cause."""
+    wrapped = (getattr(error, "reason", None), *error.args, error.__cause__)
+    return next((inner for inner in wrapped if isinstance(inner, BaseException)), None)
 
 
 class _Progress:
@@ -176,25 +199,25 @@ def _make(name: str, known: KnownMesh, original: Original, archive: Path, watche
     mesh, records = run_steps(read_polygons(unpacked), known.steps, lambda step: watcher.doing(name, str(step)))
     triangles = as_triangles(mesh)
     data = ply_bytes(triangles)
-    note = {
-        "name": name,
-        "what": known.what,
-        "credit": known.credit,
-        "licence": known.licence,
-        "origin": known.origin,
-        "page": known.page,
-        "address": original.address,
-        "member": original.member,
-        "original_sha256": original.sha256,
-        "steps": records,
-        "triangles": len(triangles.faces),
-        "sha256": hashlib.sha256(data).hexdigest(),
-        "airlight": version("airlight"),
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
-    }
+    note = Note(
+        name=name,
+        what=known.what,
+        credit=known.credit,
+        licence=known.licence,
+        origin=known.origin,
+        page=known.page,
+        address=original.address,
+        member=original.member,
+        original_sha256=original.sha256,
+        steps=[StepRecord(**record) for record in records],
+        triangles=len(triangles.faces),
+        sha256=hashlib.sha256(data).hexdigest(),
+        airlight=version("airlight"),
+        date=datetime.now(UTC).isoformat(timespec="seconds"),
+    )
     path = user_folder() / name
     make_folder(path.parent, FOLDER_CURE)
-    _write(path, data, json.dumps(note, indent=2) + "\n")
+    _write(path, data, note.model_dump_json(indent=2) + "\n")
     return Fetched(path, note, fresh=True)
 
 

@@ -55,7 +55,8 @@ def find_mesh(filename: str, scene_folder: Path) -> MeshFile:
 
     Raises
     ------
-    InputError   there is no such mesh, AIRLIGHT_MESH_DIR names a missing folder, or the cache cannot be written
+    InputError   there is no such mesh, a folder of meshes cannot be read or AIRLIGHT_MESH_DIR names a missing one, or
+                 the cache cannot be written
     """
     own = Path(scene_folder, filename).absolute()
     if os.path.isfile(own):
@@ -81,11 +82,11 @@ def available() -> list[MeshFile]:
 
     Raises
     ------
-    InputError   AIRLIGHT_MESH_DIR names a missing folder
+    InputError   a folder of meshes cannot be read, or AIRLIGHT_MESH_DIR names a missing one
     """
     names = set(procedural.RECIPES)
     for folder, _ in _folders():
-        if folder.is_dir():
+        if os.path.isdir(folder):
             names |= {entry.name for entry in folder.iterdir() if entry.suffix.lower() in (".ply", ".obj")}
     found = [_find_by_name(name) for name in sorted(names)]
     return [mesh for mesh in found if mesh is not None]
@@ -117,8 +118,18 @@ def _folders() -> list[tuple[Path, Origin]]:
     for part in filter(None, os.environ.get(VARIABLE, "").split(os.pathsep)):
         if not os.path.isdir(part):
             raise InputError(f"{VARIABLE} names the folder {part}, which does not exist; correct it or unset it.")
+        _check_readable(Path(part), f"make it so, or correct {VARIABLE}, which names it")
         folders.append((Path(part).absolute(), "mesh folder"))
-    return [*folders, (user_folder(), "user data")]
+    own = user_folder()
+    if os.path.isdir(own):
+        _check_readable(own, "make it so, or set XDG_DATA_HOME to another folder")
+    return [*folders, (own, "user data")]
+
+
+def _check_readable(folder: Path, cure: str) -> None:
+    # the meshes in it would seem not to be there, and stand-ins would serve without a word
+    if not os.access(folder, os.R_OK | os.X_OK):
+        raise InputError(f"The folder {folder} is not readable for you: {cure}.")
 
 
 def _find_by_name(name: str) -> MeshFile | None:

@@ -59,7 +59,7 @@ def test_the_fallback(name: str, others: Path, tmp_path: Path) -> None:
     scene = name if name == "sphere" else str(others / f"{name}.xml")
     out = tmp_path / "scalar.exr"
     main = ["-c", "from experiments.cli import main; main()"]
-    options = ["--size", str(SIDE), str(SIDE), "--rel-error", "0.2", "--time-limit", "5", "--out", str(out)]
+    options = ["--size", str(SIDE), str(SIDE), "--rel-error", "0.2", "--time-limit", "40", "--out", str(out)]
     run = scalar([*main, "reference", scene, *options], tmp_path)
     assert run.returncode == 0, run.stderr
     assert "scalar_rgb" in run.stdout + run.stderr

@@ -8,6 +8,8 @@ FOG = '<ref id="fog"/>\n  </sensor>'
 NULL = '<bsdf type="null"/><ref id="fog" name="interior"/>'
 AROUND_ALL = moved('<scale value="20"/>') + NULL
 
+FLUSH, DOUBLED = moved('<scale value="50"/><translate z="-1"/>'), moved('<scale value="2"/>')
+
 
 def held(plugin: str, properties: str) -> str:
     """A shape before the ball that holds the fog."""
@@ -63,7 +65,22 @@ MORE_CASES: dict[str, tuple[str, str, str]] = {
     "a near plane that reaches into the body": (
         FOG,
         f'<float name="near_clip" value="4.5"/></sensor>{held("cube", NULL)[: -len(BALL)]}',
-        "is inside the shape that holds the medium",
+        "near plane that cuts the shape",
+    ),
+    "a far plane that cuts the body": (
+        FOG,
+        f'<float name="far_clip" value="5"/></sensor>{held("cube", NULL)[: -len(BALL)]}',
+        "far plane that cuts the shape that holds the medium: use a far_clip above 6",
+    ),
+    "a floor in the body's face": (
+        FOG,
+        f'</sensor><shape type="rectangle">{FLUSH}</shape>{held("cube", NULL)[: -len(BALL)]}',
+        "lies in a face of the shape that holds the medium",
+    ),
+    "a body with fog around it": (
+        BALL,
+        held("cube", AROUND_ALL + '<ref id="fog" name="exterior"/>'),
+        "airlight takes none around a bounded one",
     ),
     "a surface that says it is in bounded fog": (
         RADIUS,
@@ -143,9 +160,21 @@ MORE_CASES: dict[str, tuple[str, str, str]] = {
         f'<shape type="instance"><shape type="sphere"/></shape>{BALL}',
         "should hold a <ref> to one shapegroup",
     ),
+    "empty group": (BALL, f'<shape type="shapegroup" id="g"/>{BALL}', "holds no shape"),
+    "group inside its instance": (
+        BALL,
+        f'<shape type="instance"><shape type="shapegroup"><shape type="cube"/></shape></shape>{BALL}',
+        "stands inside an instance",
+    ),
+    "sun of another scale": (
+        SPOT,
+        f'<emitter type="directional">{DOUBLED}</emitter><shape type="cube">{AROUND_ALL}</shape>{SPOT}',
+        "use <lookat> or a 'direction'",
+    ),
+    "axis of the field of view as a colour": (FOV, FOV + '<rgb name="fov_axis" value="1, 1, 1"/>', "a <string>"),
     "light in a group": (
         BALL,
-        f'<shape type="shapegroup"><emitter type="point"/></shape>{BALL}',
+        f'<shape type="shapegroup"><shape type="cube"/><emitter type="point"/></shape>{BALL}',
         "'point' inside 'shapegroup' is outside",
     ),
     # lenses

@@ -113,7 +113,6 @@ CASES: dict[str, tuple[str, str, str]] = {
     "camera outside the fog": ('<ref id="fog"/>', "", "is not inside a medium"),
     "no medium": ('<ref id="fog"/>\n  </sensor>', "</sensor>", "<ref id='...'/> of a medium"),
     "no film": (FILM, "", "add <film type='hdrfilm'/>"),
-    "no field of view": (FOV, "", "needs the property 'fov'"),
     "no camera": (GOOD, '<scene version="3.0.0"><emitter type="point"/></scene>', "has no sensor"),
     "two cameras": (
         SPOT,

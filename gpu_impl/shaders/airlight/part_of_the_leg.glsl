@@ -8,7 +8,8 @@
 #include "fog.glsl"
 
 const float THICKEST = 8.0;   // optical depth that one set of nodes takes
-const int MOST_PARTS = 16;
+const int MOST_PARTS = 64;
+const float DARKEST = 88.0;   // beyond this optical depth float32 holds no light
 
 // The mean of e^-s for s that runs evenly from a to b.
 vec3 mean_transmittance(vec3 a, vec3 b) {
@@ -24,7 +25,7 @@ vec3 smooth_piece(Ray ray, Light light, float t0, float dt) {
     for (int i = 0; i < NODES; ++i) {
         float tangent = tan(angle * NODE[i]);
         float t = t0 + (light.directional ? dt * NODE[i]
-                                          : tangent * (p.h * p.h + s_a * s_a) / max(p.h - s_a * tangent, 1e-30));
+                                          : tangent * (p.h * p.h + s_a * s_a) / (p.h - s_a * tangent));
         vec3 point = ray.o + t * ray.d;
         vec3 l = light.directional ? -light.direction : normalize(light.position - point);
         vec2 half_angle = 0.25 * vec2(dot(l + ray.d, l + ray.d), dot(l - ray.d, l - ray.d));
@@ -34,6 +35,9 @@ vec3 smooth_piece(Ray ray, Light light, float t0, float dt) {
 }
 
 vec3 in_parts(Ray ray, Light light, float t0, float dt) {
+    float thinnest = min(sigma_t.x, min(sigma_t.y, sigma_t.z));
+    dt = min(dt, DARKEST / max(thinnest, 1e-30) - t0);
+    if (dt <= 0.0) return vec3(0.0);
     float thickest = max(sigma_t.x, max(sigma_t.y, sigma_t.z)) * dt;
     int parts = clamp(int(ceil(thickest / THICKEST)), 1, MOST_PARTS);
     vec3 sum = vec3(0.0);
@@ -51,6 +55,8 @@ vec3 through_boundary(Ray ray, Light light, float t0, float dt) {
     for (int piece = 0; piece < FOG_PLANES && t < end; ++piece) {
         // q = level + slope (t' - t) of the plane that decides at t; of two, the one that falls faster
         float level = 3e38, slope = 0.0, next = end;
+        // as many pieces as planes at most; what a rounding leaves is the last one's
+        bool last = piece == FOG_PLANES - 1;
         for (int pass = 0; pass < 2; ++pass) {
             for (int i = 0; i < FOG_PLANES; ++i) {
                 vec3 n = fog_planes[i].xyz;
@@ -59,7 +65,7 @@ vec3 through_boundary(Ray ray, Light light, float t0, float dt) {
                 float q = max(fog_planes[i].w - dot(n, ray.o + t * ray.d), 0.0) / c, dq = -dot(n, ray.d) / c;
                 if (pass == 0 && (q < level || (q == level && dq < slope))) { level = q; slope = dq; }
                 // the first that takes over
-                if (pass == 1 && dq < slope) next = min(next, t + max((q - level) / (slope - dq), 1e-6 * dt));
+                if (pass == 1 && dq < slope && !last) next = min(next, t + max((q - level) / (slope - dq), 1e-6 * dt));
             }
         }
         float length = next - t;
