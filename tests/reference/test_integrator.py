@@ -10,7 +10,7 @@ from oracles import SphereScene, soft_spot_airlight, spot_airlight, whole_ray_ai
 from scene_files import COLLINEAR, POINT, point, sphere, spot, write_scene
 from scipy import stats
 
-from reference import estimators, integrator
+from reference import distances, estimators, integrator
 from reference.convergence import FEWEST_PASSES, Estimate, converge
 from reference.estimators import Equiangular, Volpath
 from reference.goal import Goal
@@ -150,7 +150,7 @@ def test_reach_cuts_off_nothing_that_is_lit(name: str, tmp_path) -> None:
     (emitter,) = made.mitsuba.scene.emitters()
     pixels, along = 24 * 24, 256
     ray = made.rays(dr.arange(mi.UInt32, pixels * along) // along)
-    begin, end = integrator.reach(emitter, ray, ray.maxt)
+    begin, end = distances.reach(emitter, ray, ray.maxt)
     t = ray.maxt * ((dr.arange(mi.UInt32, pixels * along) % along) + 0.5) / along
     point_on_ray = dr.zeros(mi.Interaction3f, pixels * along)
     point_on_ray.p = ray(t)

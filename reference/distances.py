@@ -1,0 +1,102 @@
+"""Where along a ray light is scattered: bounds and densities from which the integrator samples distances."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from scenes.mitsuba_setup import mitsuba
+
+mi = mitsuba()
+import drjit as dr  # noqa: E402
+
+
+def position_of(emitter: Any, ray: Any) -> Any:
+    """Where a point-like emitter is, Point3f."""
+    anywhere = dr.zeros(mi.Interaction3f)
+    anywhere.p = ray.o
+    return emitter.sample_direction(anywhere, mi.Point2f(0.5), True)[0].p
+
+
+def reach(emitter: Any, ray: Any, t_max: Any) -> tuple[Any, Any]:
+    """Bound the part of the ray that a light can reach: a spot's cone, or everything for a point light.
+
+    It only says where to sample; the light's own falloff decides what is lit. So it is never narrower than the cone,
+    and wider by no more than what float32 leaves open: a dark margin of a thousandth would be met by a sample in a
+    thousand, and until then both the mean and its error bar would be wrong.
+
+    Returns
+    -------
+    begin, end : Float    [scene unit]; begin = end where the light reaches nothing
+    """
+    begin, end = mi.Float64(0.0), mi.Float64(t_max)
+    parameters = mi.traverse(emitter)
+    cutoff = np.radians(float(np.max(parameters["cutoff_angle"]))) if "cutoff_angle" in parameters else np.pi
+    # Mitsuba rounds the cosine of a direction to some 1e-7
+    cutoff = cutoff + 3e-7 / np.sin(cutoff) if cutoff < np.pi else cutoff
+    if cutoff > 0.49 * np.pi:
+        return mi.Float(begin), mi.Float(end)
+    axis = dr.normalize(mi.Vector3d(parameters["to_world"] @ mi.Vector3f(0, 0, 1)))
+    cos2 = float(np.cos(cutoff)) ** 2
+    d, from_light = mi.Vector3d(ray.d), mi.Point3d(ray.o) - mi.Point3d(position_of(emitter, ray))
+    along_d, along_o = dr.dot(d, axis), dr.dot(from_light, axis)
+    # the ray is inside the double cone where a t^2 + 2 b t + c > 0
+    a = dr.square(along_d) - cos2 * dr.squared_norm(d)
+    b = along_d * along_o - cos2 * dr.dot(d, from_light)
+    c = dr.square(along_o) - cos2 * dr.squared_norm(from_light)
+    a = dr.select(dr.abs(a) < 1e-12, 1e-12, a)
+    root = dr.sqrt(dr.maximum(dr.square(b) - a * c, 0))
+    low, high = dr.minimum((-b - root) / a, (-b + root) / a), dr.maximum((-b - root) / a, (-b + root) / a)
+    # a > 0: the ray enters or leaves one nappe for good; a < 0: it crosses one, maybe the dark one behind the light
+    crossing = a < 0
+    begin = dr.select(crossing | (along_d > 0), dr.select(crossing, low, high), begin)
+    end = dr.select(crossing, high, dr.select(along_d > 0, end, low))
+    dark = crossing & ((dr.square(b) <= a * c) | (along_o + 0.5 * (low + high) * along_d < 0))
+    begin = dr.clip(begin, 0, t_max)
+    return mi.Float(begin), mi.Float(dr.select(dark, begin, dr.clip(end, begin, t_max)))
+
+
+def equiangular(ray: Any, begin: Any, end: Any, position: Any, u: Any) -> tuple[Any, Any]:
+    """Sample a distance on [begin, end] with density proportional to 1 / d^2 (Kulla and Fajardo 2012, section 4).
+
+    Returns
+    -------
+    t : Float              [scene unit]
+    inverse_pdf : Float    [scene unit]
+    """
+    # float64, and the difference of the two angles as one arc tangent: on a ray that points at the light or away from
+    # it both are pi / 2 but for a millionth, and float32 would quantise their difference alike in every pass
+    d, to_light = mi.Vector3d(ray.d), mi.Point3d(position) - mi.Point3d(ray.o)
+    t_h = dr.dot(to_light, d)
+    s_a, s_b = mi.Float64(begin) - t_h, mi.Float64(end) - t_h
+    # a ray through the light keeps a distance that float64 resolves
+    h = dr.maximum(dr.norm(dr.cross(to_light, d)), 1e-14 * dr.maximum(dr.abs(s_a), dr.abs(s_b)))
+    h = dr.maximum(h, 1e-300)
+    angle = dr.atan2((s_b - s_a) * h, dr.square(h) + s_a * s_b)
+    tangent = dr.tan(angle * mi.Float64(u))
+    s = s_a + tangent * (dr.square(h) + dr.square(s_a)) / (h - s_a * tangent)
+    # the weight belongs to the distance that float32 keeps
+    t = dr.clip(mi.Float(s + t_h), begin, end)
+    s = mi.Float64(t) - t_h
+    return t, mi.Float(angle * (dr.square(h) + dr.square(s)) / h)
+
+
+def even_or_attenuated(begin: Any, end: Any, sigma_t: Any, u: Any) -> tuple[Any, Any]:
+    """Sample a distance on [begin, end] evenly or by e^(-sigma_t t), each half the time, for parallel light.
+
+    Where the light's own way grows shorter along the ray the integrand does not fall, so neither serves alone.
+
+    Returns
+    -------
+    t : Float              [scene unit]
+    inverse_pdf : Float    [scene unit]
+    """
+    length, rate, v = mi.Float64(end - begin), mi.Float64(sigma_t), mi.Float64(u)
+    # in fog so thin the two are one, and the differences from 1 below have lost their digits
+    rate = dr.maximum(rate, 1e-6 / dr.maximum(length, 1e-300))
+    lost = 1 - dr.exp(-rate * length)
+    s = dr.select(v < 0.5, -dr.log(1 - 2 * v * lost) / rate, (2 * v - 1) * length)
+    s = dr.clip(s, 0, length)
+    pdf = 0.5 * rate * dr.exp(-rate * s) / lost + 0.5 / dr.maximum(length, 1e-300)
+    return mi.Float(begin + s), mi.Float(dr.select(length > 0, 1 / pdf, 0))
