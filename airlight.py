@@ -151,7 +151,7 @@ def compare(
     Raises
     ------
     InputError
-        The sizes differ, a layer is missing, values are not finite, or the sheet cannot be written.
+        The sizes or the scenes differ, a layer is missing, values are not finite, or the sheet cannot be written.
     """
     from experiments.compare import compare as compare_results
 
@@ -171,13 +171,15 @@ def save(path: str | Path, scene: Scene, result: Frame | Reference, truth: Refer
     Raises
     ------
     InputError
-        The file cannot be written, or is not called .exr.
+        The file cannot be written, is not called .exr, or would name a scene that the result is not of.
     """
     from experiments.exr import check_writable
     from experiments.pictures import write_case, write_frame, write_reference
     from gpu_impl.frame import Frame
 
     check_writable(Path(path), ".exr")
+    if truth is not None and (not isinstance(result, Frame) or isinstance(truth, Frame)):
+        raise InputError(f"{path}: a frame may have a reference beside it, and nothing else; save each alone.")
     if not isinstance(result, Frame):
         write_reference(Path(path), scene, result)
     elif truth is None:

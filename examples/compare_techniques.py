@@ -8,6 +8,7 @@ It takes 10 s on two cores, and less once the reference is in the cache. The fil
 from __future__ import annotations
 
 import argparse
+import sys
 
 import airlight
 
@@ -35,4 +36,8 @@ if __name__ == "__main__":
     parser.add_argument("--size", type=int, nargs=2, default=(128, 128), metavar=("W", "H"))
     parser.add_argument("--rel-error", type=float, default=0.02)
     chosen = parser.parse_args()
-    main(tuple(chosen.size), chosen.rel_error)
+    try:
+        main(tuple(chosen.size), chosen.rel_error)
+    except airlight.InputError as error:
+        print(error, file=sys.stderr)
+        raise SystemExit(2) from None

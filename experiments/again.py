@@ -20,6 +20,7 @@ from gpu_impl.techniques import Technique
 from scenes.catalogue import FOLDER
 from scenes.errors import InputError
 from scenes.loader import load
+from scenes.messages import readable
 from scenes.model import Scene
 
 
@@ -33,7 +34,7 @@ class Again:
     frame : Frame            as drawn now
     differing : int          pixels of which some layer differs from the file's in some bit
     layers : tuple of str    those that differ
-    largest : float          the largest difference of a value
+    largest : float          the largest difference of a value; not finite where the file holds such values
     changed : dict           what draws now and drew then, where the two are not the same: key to (then, now)
     """
 
@@ -55,10 +56,9 @@ class Again:
         if not self.differing:
             note = f" (though {changes})" if changes else ""
             return f"the same pixels as {before}, bit for bit in {', '.join(self.frame.layers)}{note}"
-        found = (
-            f"{self.differing} of {self.frame.depth.size} pixels differ from {before}, by at most {self.largest:.3g}, "
-            f"in {', '.join(self.layers)}"
-        )
+        by = f"by at most {self.largest:.3g}" if np.isfinite(self.largest) else "which holds values that are not finite"
+        pixels = f"{self.differing} of {self.frame.depth.size} pixels differ"
+        found = f"{pixels} from {before}, {by}, in {', '.join(self.layers)}"
         return f"{found}; that may be, for {changes}" if changes else f"{found}, though drawn by the same program"
 
 
@@ -89,31 +89,38 @@ def draw_again(path: Path, scene: str | None = None) -> Again:
         different = before.view(np.uint32) != image.view(np.uint32)
         if different.any():
             layers.append(name)
-            largest = max(largest, float(np.max(np.abs(image.astype(np.float64) - before))))
+            # np.maximum, for max() may drop a NaN
+            largest = float(np.maximum(largest, np.max(np.abs(image.astype(np.float64) - before))))
         differing |= different.any(axis=-1) if image.ndim == 3 else different
     now = environment() | {"gl_renderer": frame.gl.renderer, "gl_version": frame.gl.version}
-    then = {key: picture.metadata.get(key, "unknown") for key in now}
+    then = {key: _shown(picture, key) for key in now}
     changed = {key: (then[key], now[key]) for key in now if then[key] != now[key]}
     return Again(loaded, frame, int(differing.sum()), tuple(layers), largest, changed)
 
 
 def _check_origin(picture: Picture) -> None:
-    metadata, path = picture.metadata, picture.path
-    if "technique" in metadata:
+    path = picture.path
+    if "technique" in picture.metadata:
         return
-    if "estimator" in metadata:
+    if "estimator" in picture.metadata:
         raise InputError(
             f"{path} is a reference, which no technique drew; estimate it again by `airlight reference` with the scene "
-            f"{metadata.get('scene')}, --size {metadata.get('size')} and --rel-error {metadata.get('rel_error_asked')}."
+            f"{_shown(picture, 'scene')}, --size {_shown(picture, 'size')} and --rel-error "
+            f"{_shown(picture, 'rel_error_asked')}."
         )
     raise InputError(f"{path} does not say how it was drawn; give a file that `airlight render` or a suite wrote.")
+
+
+def _shown(picture: Picture, key: str) -> str:
+    """One of the metadata for a sentence, where it may be of any length."""
+    return readable(picture.metadata.get(key, "unknown"))
 
 
 def _text(picture: Picture, key: str) -> str:
     if key not in picture.metadata:
         raise InputError(
             f"{picture.path} lacks '{key}' in its metadata, which another version of airlight wrote "
-            f"({picture.metadata.get('airlight', 'unknown')}); render the scene anew."
+            f"({_shown(picture, 'airlight')}); render the scene anew."
         )
     return picture.metadata[key]
 
@@ -124,12 +131,14 @@ def _value(picture: Picture, key: str, kind: Any, parse: Callable[[str], Any] = 
     try:
         # pydantic's error is a ValueError too
         return TypeAdapter(kind).validate_python(parse(text))
-    except ValueError:
-        raise _unusable(picture, key, text) from None
+    except (ValueError, RecursionError):
+        raise _unusable(picture, key) from None
 
 
-def _unusable(picture: Picture, key: str, text: str) -> InputError:
-    return InputError(f"{picture.path} says {key} = '{text}' in its metadata, which cannot be; render the scene anew.")
+def _unusable(picture: Picture, key: str) -> InputError:
+    return InputError(
+        f"{picture.path} says {key} = '{_shown(picture, key)}' in its metadata, which cannot be; render the scene anew."
+    )
 
 
 def _technique(picture: Picture) -> Technique:
@@ -139,7 +148,7 @@ def _technique(picture: Picture) -> Technique:
         technique = TypeAdapter(Technique).validate_python(texts)
     except ValidationError as error:
         wrong = str(error.errors()[0]["loc"][0])
-        raise _unusable(picture, TECHNIQUE_KEYS.get(wrong, wrong), texts[wrong]) from None
+        raise _unusable(picture, TECHNIQUE_KEYS.get(wrong, wrong)) from None
     technique.check()
     return technique
 
@@ -150,13 +159,13 @@ def _load(picture: Picture, override: str | None) -> Scene:
     parameters = _value(picture, "parameters", dict[str, str])
     if "size" in parameters:
         # no scene can have been given one
-        raise _unusable(picture, "parameters", picture.metadata["parameters"])
+        raise _unusable(picture, "parameters")
     width, height = _value(picture, "size", tuple[int, int], str.split)
     path = Path(name) if Path(name).is_absolute() else FOLDER / f"{name}.xml"
     if override is None and not os.path.isfile(path):
         raise InputError(
-            f"{picture.path} was drawn from the scene {name}, which is not there; say where it is now: airlight render "
-            f"SCENE --again {picture.path}."
+            f"{picture.path} was drawn from the scene {readable(name)}, which is not there; say where it is now: "
+            f"airlight render SCENE --again {picture.path}."
         )
     scene = load(override or path, (width, height), **parameters)
     if scene.digest != _text(picture, "scene_digest"):
@@ -176,12 +185,13 @@ def _other_scene(picture: Picture, scene: Scene) -> InputError:
                 f"{picture.path} was drawn with airlight's stand-in for {name}, and the scene now finds {found[name]}: "
                 "move that away for the moment, or unset AIRLIGHT_MESH_DIR."
             )
+        name, sha256 = readable(name), readable(sha256)
         cure = "into a folder that AIRLIGHT_MESH_DIR names" if name in scene.stand_ins else "in its place"
         return InputError(
             f"{picture.path} was drawn with another {name} than {found[name]}: put the one whose SHA-256 is {sha256} "
             f"{cure}."
         )
-    drawn_by = ", ".join(f"{key} {picture.metadata.get(key, 'unknown')}" for key in ("airlight", "commit", "mitsuba"))
+    drawn_by = ", ".join(f"{key} {_shown(picture, key)}" for key in ("airlight", "commit", "mitsuba"))
     return InputError(
         f"{picture.path} was not drawn from {scene.path} as it is now: its text, or a file that it includes, differs; "
         f"give the scene as it was ({drawn_by}): airlight render SCENE --again {picture.path}."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -44,6 +45,10 @@ app.add_typer(meshes_app)
 
 def main() -> None:
     """Run the command line: what cannot be used ends in one sentence and exit code 2."""
+    for stream in (sys.stdout, sys.stderr):
+        # a name that the terminal's encoding lacks is shown as well as it can be
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
     try:
         app()
     except InputError as error:
@@ -118,13 +123,17 @@ def render(
     from experiments.console import say
     from experiments.exr import check_writable
     from experiments.terminal import announce_scene
+    from gpu_impl.renderer import Renderer
+    from gpu_impl.techniques import find_technique
 
     settings = {"steps": steps, "shadow_map": shadow_map, "downsample": downsample}
     check_writable(out, ".exr")
     loaded = airlight.load(scene, size, **parse_parameters(parameter))
     announce_scene(loaded)
-    frame = airlight.render(loaded, technique, **settings)
-    milliseconds = airlight.milliseconds(loaded, technique, **settings)
+    chosen = find_technique(technique, **settings)
+    with Renderer(loaded) as renderer:
+        frame = renderer.render(chosen)
+        milliseconds = renderer.milliseconds(chosen)
     airlight.save(out, loaded, frame)
     say(
         f"{out}: {loaded.name}, {frame.technique.name}, {milliseconds:.1f} ms a frame on {frame.gl.renderer} (median "
@@ -170,7 +179,7 @@ def reference(
     import airlight
     from experiments.console import say
     from experiments.exr import check_writable
-    from experiments.terminal import TerminalWatcher, announce_accuracy, announce_scene, announce_variant
+    from experiments.terminal import TerminalWatcher, announce_reference, announce_scene, announce_variant
     from scenes.mitsuba_setup import mitsuba
 
     # refused before the scene is loaded
@@ -183,7 +192,7 @@ def reference(
         raise InputError("--check compares with volpath, and in scalar_rgb the reference is volpath; leave it out.")
     with TerminalWatcher(rel_error) as watcher:
         result = airlight.reference(loaded, rel_error, time_limit, watcher.reference)
-    announce_accuracy(result)
+    announce_reference(result)
     airlight.save(out, loaded, result)
     estimate = result.estimate
     source = "from the cache" if result.from_cache else f"{estimate.seconds:.1f} s"
@@ -211,10 +220,14 @@ def compare(
     from dataclasses import asdict
 
     import airlight
-    from experiments.console import console, say
+    from experiments.compare import other_scene
+    from experiments.console import console, say, warn
     from experiments.terminal import metrics_table
 
-    metrics = airlight.compare(airlight.read(picture), airlight.read(truth), layer=layer, sheet=heatmap)
+    pictures = airlight.read(picture), airlight.read(truth)
+    metrics = airlight.compare(*pictures, layer=layer, sheet=heatmap)
+    if notice := other_scene(*pictures):
+        warn(notice)
     if json:
         print(json_module.dumps({"layer": layer, **asdict(metrics)}))
     else:

@@ -14,7 +14,9 @@ from experiments.metrics import Image, Metrics, measure
 from experiments.pictures import Picture
 from experiments.sheet import summary, write_sheet
 from gpu_impl.frame import Frame
+from reference.estimate import Reference
 from scenes.errors import InputError
+from scenes.messages import readable
 
 
 class Layered(Protocol):
@@ -44,23 +46,41 @@ def compare(
     Raises
     ------
     InputError
-        A layer is missing, the sizes differ, or the sheet cannot be written.
+        A layer is missing, the sizes or the scenes differ, or the sheet cannot be written.
     """
     if sheet:
         check_writable(sheet, ".png")
     if layer and not (_is_result(test) or _is_result(truth)):
         raise InputError(f"An array has no layer '{layer}'; compare results, or leave the layer out.")
     layer = layer or MAIN
+    digests = {result.scene_digest for result in (test, truth) if isinstance(result, Frame | Reference)}
+    if len(digests) > 1:
+        raise InputError(
+            "The picture is not of the reference's scene, or not with its parameters; make both from the same scene."
+        )
     images = _layer(test, layer, "The picture"), _layer(truth, layer, "The reference")
     if standard_error is None and _is_result(truth):
         standard_error = truth.layers.get(f"standard_error.{layer}")
     metrics = measure(*images, standard_error)
     if sheet:
         stand_ins = truth.metadata.get("stand_ins", "") if isinstance(truth, Picture) else ""
-        note = f"stand-in for {stand_ins}" if stand_ins else ""
+        note = f"stand-in for {readable(stand_ins)}" if stand_ins else ""
         title = f"{_name(test, 'a picture')} against {_name(truth, 'the reference')}: {layer}"
         write_sheet(sheet, title, *images, summary(asdict(metrics)), note)
     return metrics
+
+
+def other_scene(test: Picture, truth: Picture) -> str:
+    """Say of what each is where two files are not of one scene; empty where they are, or where one does not say."""
+    digests = [picture.metadata.get("scene_digest") for picture in (test, truth)]
+    if None in digests or digests[0] == digests[1]:
+        return ""
+    said = (
+        f"{picture.path} is of the scene {readable(picture.metadata.get('scene', 'unknown'))} with the parameters "
+        f"{readable(picture.metadata.get('parameters', 'unknown'))}"
+        for picture in (test, truth)
+    )
+    return f"These are not pictures of one scene: {' and '.join(said)}."
 
 
 def _is_result(result: Any) -> TypeGuard[Layered]:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from scenes.errors import InputError
+from scenes.file_names import check_name
 from scenes.replacing import replacing
 
 Layers = dict[str, np.ndarray]
@@ -59,7 +60,7 @@ def write_exr(path: Path, layers: Mapping[str, np.ndarray], metadata: Mapping[st
 
 def check_writable(path: Path, ending: str = "") -> None:
     """Raise InputError where `path` could not be written, or lacks its ending: better before the work than after it."""
-    folder = path.absolute().parent
+    check_name(path)
     try:
         mode = path.stat().st_mode
         if stat.S_ISDIR(mode):
@@ -71,6 +72,9 @@ def check_writable(path: Path, ending: str = "") -> None:
         pass
     except (OSError, ValueError) as error:
         raise InputError(f"{path} cannot be written ({error}); choose another place.") from None
+    # of a link, what it points to is written
+    folder = Path(os.path.realpath(path)).parent
+    check_name(folder)
     if not folder.is_dir():
         raise InputError(f"The folder {folder} does not exist; make it first.")
     if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
@@ -91,20 +95,25 @@ def read_exr(path: Path) -> tuple[Layers, dict[str, str]]:
     Raises
     ------
     InputError
-        The file is missing or is not an EXR.
+        The file is missing, is not an EXR, or holds more or less than one whole picture.
     """
     import OpenEXR
 
+    check_name(path)
     if not os.path.isfile(path):
         raise InputError(f"There is no file {path}.")
     try:
         with OpenEXR.File(str(path), separate_channels=True) as file:
             channels = {name: np.array(channel.pixels, np.float32) for name, channel in file.channels().items()}
             # a copy: the file empties its own when it is closed
-            header = dict(file.header())
+            header, parts = dict(file.header()), len(file.parts)
         layers = _grouped(channels)
-    except (RuntimeError, ValueError, OSError):
+    except (RuntimeError, ValueError, TypeError, OSError):
         raise InputError(f"{path} is not an OpenEXR file that can be read.") from None
+    if parts > 1:
+        raise InputError(f"{path} has {parts} parts, of which airlight would see the first; save each as a file.")
+    if not all(map(np.array_equal, header["dataWindow"], header["displayWindow"])):
+        raise InputError(f"{path} holds only a part of its picture, or more (a data window); save the picture whole.")
     metadata = {key.removeprefix(PREFIX): str(value) for key, value in header.items() if key.startswith(PREFIX)}
     return layers, metadata
 

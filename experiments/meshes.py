@@ -50,7 +50,7 @@ def _describe(mesh: MeshFile) -> dict[str, Any]:
         "licence": known.licence,
         "page": known.page,
         "get": catalogue.how_to_get(mesh.name),
-        "steps": note["steps"] if note else [],
+        "steps": [record.model_dump() for record in note.steps] if note else [],
     }
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -62,13 +65,30 @@ def fetch(
     # the terms come before the bytes
     for name in chosen:
         say(f"{name}: {MESHES[name].what}. Credit: {MESHES[name].credit}. Licence: {MESHES[name].licence}.")
-    with FetchWatcher() as watcher:
+    with _terminated_cleanly(), FetchWatcher() as watcher:
         for mesh in fetch(chosen, watcher):
             say(_told(mesh))
 
 
+@contextmanager
+def _terminated_cleanly() -> Iterator[None]:
+    """Let SIGTERM end the program by an exception, so that what was begun is removed; by default nothing would be."""
+
+    def end(number: int, _: object) -> None:
+        # the exit code by which shells know a signal
+        raise SystemExit(128 + number)
+
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
 def _told(mesh: Fetched) -> str:
+    if mesh.note is None:
+        return f"{mesh.path}: was there already, and is the reference copy"
     if not mesh.fresh:
         return f"{mesh.path}: was there already, from the same original by the same steps"
-    steps = [f"{step['step']} -> {step['polygons']} polygons" for step in mesh.note["steps"]]
-    return f"{mesh.path}: {mesh.note['member']}, {', '.join(steps)}; {mesh.note['triangles']} triangles"
+    steps = [f"{record.step} -> {record.polygons} polygons" for record in mesh.note.steps]
+    return f"{mesh.path}: {mesh.note.member}, {', '.join(steps)}; {mesh.note.triangles} triangles"

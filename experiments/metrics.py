@@ -30,7 +30,7 @@ class Metrics:
     mean_rel : float           mean of (t - r) / max(r, floor)
     rel_50, rel_95, rel_99     percentiles of |t - r| / max(r, floor)
     image_mean_rel : float     (mean t - mean r) / mean r
-    flip : float               mean HDR-FLIP (Andersson et al. 2021), 0 to 1
+    flip : float               mean HDR-FLIP (Andersson et al. 2021), 0 to 1, exposed for the lit pixels
     """
 
     rel_mse: float | None
@@ -70,16 +70,16 @@ def measure(test: Image, reference: Image, standard_error: Image | None = None) 
     Raises
     ------
     InputError
-        The sizes differ, or a picture holds values that are not finite.
+        A picture is no array (H, W, 3), the sizes differ, or a picture holds values that are not finite.
     """
-    test, reference = np.asarray(test, np.float64), np.asarray(reference, np.float64)
-    if test.shape != reference.shape:
-        sizes = " and ".join(f"{image.shape[1]} x {image.shape[0]}" for image in (test, reference))
-        raise InputError(f"The pictures have different sizes, {sizes} pixels; render them at the same size.")
-    error = np.zeros(1) if standard_error is None else np.asarray(standard_error, np.float64)
-    for name, image in (("picture", test), ("reference", reference), ("reference's standard error", error)):
-        if not np.isfinite(image).all():
-            raise InputError(f"The {name} holds values that are not finite; nothing can be measured on it.")
+    test, reference = _picture("picture", test), _picture("reference", reference)
+    error = np.zeros_like(reference)
+    if standard_error is not None:
+        error = _picture("reference's standard error", standard_error)
+    for image in (test, error):
+        if image.shape != reference.shape:
+            sizes = " and ".join(f"{found.shape[1]} x {found.shape[0]}" for found in (image, reference))
+            raise InputError(f"The pictures have different sizes, {sizes} pixels; render them at the same size.")
     squared = (test - reference) ** 2
     variance = float(np.mean(np.square(error)))
     rmse, bias = float(np.sqrt(squared.mean())), float(np.sqrt(max(0.0, squared.mean() - variance)))
@@ -98,3 +98,16 @@ def measure(test: Image, reference: Image, standard_error: Image | None = None) 
         image_mean_rel=float(test.mean() / reference.mean() - 1),
         flip=hdr_flip(test, reference),
     )
+
+
+def _picture(name: str, image: Image) -> NDArray[np.float64]:
+    """An array (H, W, 3) of finite values, or InputError."""
+    try:
+        found = np.asarray(image, np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"The {name} is no array of numbers; give one of the shape (height, width, 3).") from None
+    if found.ndim != 3 or found.shape[2] != 3 or not found.size:
+        raise InputError(f"The {name} is an array of the shape {found.shape}; give one of (height, width, 3).")
+    if not np.isfinite(found).all():
+        raise InputError(f"The {name} holds values that are not finite; nothing can be measured on it.")
+    return found

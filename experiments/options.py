@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from scenes.errors import InputError
+from scenes.file_names import is_text
 
 SCENE_HELP = "A shipped scene's name or the path of a Mitsuba XML file."
 
@@ -32,13 +33,17 @@ TimeLimit = Annotated[
 
 def parse_parameters(given: list[str] | None) -> dict[str, str]:
     """Names and values of `-p NAME=VALUE`; a value may hold further equals signs."""
-    parameters = {}
+    parameters: dict[str, str] = {}
     for text in given or []:
         name, equals, value = text.partition("=")
         if not (name and equals):
             raise InputError(f"-p {text} should be NAME=VALUE, such as -p sigma_t=0.2.")
         if name == "size":
             raise InputError(f"-p {text}: the size of the image is set by --size W H, and is no parameter of a scene.")
+        if not is_text(text):
+            raise InputError(f"-p {name} or its value holds bytes that are not UTF-8; correct it.")
+        if name in parameters:
+            raise InputError(f"-p {name} is given twice; leave one out.")
         parameters[name] = value
     return parameters
 

@@ -43,12 +43,12 @@ def read_picture(path: str | Path) -> Picture:
 
 def write_frame(path: Path, scene: Scene, frame: Frame) -> None:
     """Write what a technique drew."""
-    _write(path, scene, frame.layers, describe_frame(frame))
+    _write(path, scene, frame.layers, describe_frame(frame), frame)
 
 
 def write_reference(path: Path, scene: Scene, reference: Reference) -> None:
     """Write what was estimated."""
-    _write(path, scene, reference.layers, describe_reference(reference))
+    _write(path, scene, reference.layers, describe_reference(reference), reference)
 
 
 def write_case(path: Path, scene: Scene, frame: Frame, reference: Reference) -> None:
@@ -58,14 +58,20 @@ def write_case(path: Path, scene: Scene, frame: Frame, reference: Reference) -> 
         truth = getattr(reference, layer)
         layers[f"reference.{layer}"] = truth
         layers[f"standard_error.{layer}"] = reference.standard_error(layer)
-        if np.any(truth):
+        if np.any(truth > 0):
             layers[f"error.{layer}"] = signed_relative_error(getattr(frame, layer), truth)
-    _write(path, scene, layers, describe_frame(frame) | describe_reference(reference))
+    _write(path, scene, layers, describe_frame(frame) | describe_reference(reference), frame, reference)
 
 
-def _write(path: Path, scene: Scene, layers: Layers, metadata: dict[str, str]) -> None:
+def _write(path: Path, scene: Scene, layers: Layers, metadata: dict[str, str], *results: Frame | Reference) -> None:
     width, height = scene.camera.width, scene.camera.height
-    if any(image.shape[:2] != (height, width) for image in layers.values()):
+    same_scene = all(result.scene_digest == scene.digest for result in results)
+    if not same_scene or any(image.shape[:2] != (height, width) for image in layers.values()):
         # the metadata would name a scene that the picture is not of
-        raise InputError(f"{path}: the picture is not of the scene {scene.name} at {width} x {height} pixels.")
+        parameters = "".join(f", {name}={value}" for name, value in scene.parameters.items())
+        what = " or the reference" if len(results) > 1 else ""
+        raise InputError(
+            f"{path}: the picture{what} is not of the scene {scene.name} at {width} x {height} pixels{parameters}; "
+            "give the scene that it was made from."
+        )
     write_exr(path, layers, describe_scene(scene) | describe_files(scene) | metadata)

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from dataclasses import asdict
 from datetime import datetime
 from multiprocessing import get_context
@@ -21,6 +24,7 @@ from gpu_impl.techniques import find_technique
 from reference.convergence import Progress
 from reference.estimate import Reference, estimate_reference
 from scenes.errors import InputError
+from scenes.file_names import check_name
 from scenes.loader import load
 from scenes.model import Scene
 from scenes.replacing import replacing
@@ -73,7 +77,8 @@ def run_suite(name: str, suite: Suite, parent: Path, watcher: Watcher) -> tuple[
     total, number = len(suite.scenes) * len(techniques), 0
     # matplotlib takes as long as OpenGL: a second process draws one case's sheet while the next case renders
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as drawer:
-        sheets = [drawer.submit(prepare_sheets)]
+        with _interrupts_blocked():
+            sheets = [drawer.submit(prepare_sheets)]
         for scene in scenes:
             watcher.scene(scene)
             watcher.case(f"{scene.name}: reference", number, total)
@@ -93,6 +98,16 @@ def run_suite(name: str, suite: Suite, parent: Path, watcher: Watcher) -> tuple[
             sheet.result()
     watcher.case("done", total, total)
     return rows, folder
+
+
+@contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """A process that is started inside never hears Ctrl-C: the terminal sends it to all, and ours alone answers it."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def keep_case(folder: Path, scene: Scene, frame: Frame, reference: Reference) -> list[Row]:
@@ -156,6 +171,7 @@ def _sheet(folder: Path, scene: Scene, frame: Frame, reference: Reference, rows:
 
 def _make_folder(parent: Path, name: str) -> Path:
     """Make a new folder for this run; none before it is touched."""
+    check_name(parent.absolute())
     stem = f"{name}-{datetime.now():%Y%m%d-%H%M%S}"
     try:
         parent.mkdir(parents=True, exist_ok=True)

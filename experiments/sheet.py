@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from experiments.flip import LUMINANCE
 from experiments.metrics import Image, signed_relative_error
 from scenes.replacing import replacing
 
@@ -17,14 +18,14 @@ from scenes.replacing import replacing
 SCALE = 0.2
 # radiance at this percentile of the reference is shown just below white
 EXPOSURE_PERCENTILE = 99.0
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 def display(image: Image, reference: Image) -> NDArray[np.floating]:
     """Linear radiance as sRGB values for a screen, exposed for the reference."""
     from colour.models import cctf_encoding
 
-    white = float(np.percentile(reference, EXPOSURE_PERCENTILE)) or 1.0
+    white = float(np.percentile(reference, EXPOSURE_PERCENTILE))
+    white = white if white > 0 else 1.0
     return np.clip(cctf_encoding(np.clip(np.asarray(image) / white, 0, 1), function="sRGB"), 0, 1)
 
 
@@ -67,7 +68,7 @@ class Sheet:
         """
         # luminance, so that one number a pixel carries the sign
         test_y, reference_y = (np.asarray(image, np.float64) @ LUMINANCE for image in (test, reference))
-        relative = signed_relative_error(test_y, reference_y) if reference_y.any() else np.zeros_like(reference_y)
+        relative = signed_relative_error(test_y, reference_y) if (reference_y > 0).any() else np.zeros_like(reference_y)
         absolute = np.abs(test_y - reference_y)
         height, width = reference_y.shape
         shown = (display(test, reference), display(reference, reference), 100 * relative, absolute)

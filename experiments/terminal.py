@@ -74,8 +74,8 @@ class TerminalWatcher(Watcher):
         self._progress.update(self._estimate, completed=share, note=note)
 
     def estimated(self, reference: Reference) -> None:
-        """Say so where the reference ran out of time."""
-        announce_accuracy(reference)
+        """Say what is not as it was asked for."""
+        announce_reference(reference)
 
 
 def announce_scene(scene: Scene) -> None:
@@ -110,8 +110,10 @@ def _why_scalar(choice: LlvmChoice) -> str:
     return "there is no LLVM that Dr.Jit can use (`make setup` installs one, `airlight doctor` says more)"
 
 
-def announce_accuracy(reference: Reference) -> None:
-    """Say so where a reference ran out of time."""
+def announce_reference(reference: Reference) -> None:
+    """Say so where a reference ran out of time, or could not be kept for the next time."""
+    if reference.not_kept:
+        warn(f"The reference is not kept for the next time: {reference.not_kept}")
     estimate, asked = reference.estimate, reference.recipe["goal"]["rel_error"]
     if not estimate.reached:
         warn(

@@ -14,6 +14,7 @@ from typing import Any
 from scenes.camera import check_size, load_camera
 from scenes.catalogue import scene_path
 from scenes.errors import InputError
+from scenes.file_names import is_text
 from scenes.lights import load_light
 from scenes.materials import load_material
 from scenes.media import Fog, load_medium, load_phase, take_fog
@@ -55,6 +56,8 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
         # Mitsuba would take an empty number for 0
         if not text:
             raise InputError(f"The parameter {name} of {path} was given no value; give one or leave it out.")
+        if not is_text(text):
+            raise InputError(f"The value of the parameter {name} of {path} is not UTF-8; correct it.")
         if name in RESERVED:
             raise InputError(f"{path} cannot be given a parameter called {name}; rename it in the scene.")
     state = parse(path, texts)

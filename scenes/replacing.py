@@ -39,7 +39,7 @@ def replacing(path: Path, cure: str = "make room there, or choose another place"
     temporary = None
     try:
         # what a link points to is written, and the link stays
-        target = path.resolve() if path.is_symlink() else path
+        target = Path(os.path.realpath(path)) if path.is_symlink() else path
         beside = target.with_name(f".{target.stem[:40]}-{secrets.token_hex(4)}.part{target.suffix}")
         # the umask decides who may read it, as for any new file
         os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))

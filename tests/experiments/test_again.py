@@ -190,6 +190,30 @@ def test_the_smallest_difference_counts(tmp_path: Path) -> None:
     assert (again.differing, set(again.layers)) == (2, {"surface", "depth"})
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_values_that_are_not_finite_differ_by_no_number(tmp_path: Path, value: float) -> None:
+    path = drawn(tmp_path / "f.exr", own_scene(tmp_path))
+    rewritten(path, pixel=value)
+    again = draw_again(path)
+    assert again.differing == 1
+    assert "1 of 96 pixels differ from" in again.report(path)
+    assert "which holds values that are not finite, in scattering" in again.report(path)
+    assert "at most" not in again.report(path)
+
+
+@pytest.mark.parametrize("key", ["technique", "visibility", "steps", "size", "parameters", "scene_file", "numpy"])
+def test_metadata_of_any_length_make_a_sentence(tmp_path: Path, key: str) -> None:
+    path = drawn(tmp_path / "f.exr", own_scene(tmp_path))
+    rewritten(path, pixel=0.5, **{key: "x" * 100_000})
+    try:
+        said = draw_again(path).report(path)
+    except InputError as error:
+        said = str(error)
+    assert "xxx ... xxx" in said or key == "technique"
+    assert len(said) < 1000
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -204,6 +228,7 @@ def test_the_smallest_difference_counts(tmp_path: Path) -> None:
         ({"visibility": "guesses"}, "There is no visibility 'guesses'"),
         ({"parameters": "sigma_t=0.2"}, "says parameters = 'sigma_t=0.2' in its metadata"),
         ({"parameters": "[3]"}, "says parameters = "),
+        ({"parameters": "[" * 100_000}, "says parameters = '[[[["),
         ({"parameters": '{"size": "3"}'}, "says parameters = "),
         ({"parameters": '{"nobody": "3"}'}, "no use for the parameter"),
         ({"size": "3"}, "says size = '3' in its metadata"),

@@ -111,14 +111,46 @@ def test_a_picture_of_another_size_is_not_saved_as_the_scenes(
     assert not list(tmp_path.iterdir())
 
 
+def test_a_picture_of_another_scene_is_neither_saved_nor_compared_as_the_scenes(
+    tmp_path: Path, pair: tuple[Scene, Frame, Reference]
+) -> None:
+    scene, frame, truth = pair
+    other = airlight.load("sphere", size=(24, 16), sigma_t=0.3)
+    theirs = airlight.render(other, steps=4)
+    for save in (
+        lambda path: airlight.save(path, other, frame),
+        lambda path: airlight.save(path, other, truth),
+        lambda path: airlight.save(path, scene, theirs),
+        lambda path: airlight.save(path, scene, theirs, truth),
+        lambda path: airlight.save(path, other, theirs, truth),
+    ):
+        with pytest.raises(airlight.InputError, match="is not of the scene sphere at 24 x 16 pixels") as caught:
+            save(tmp_path / "f.exr")
+        assert "\n" not in str(caught.value)
+    for result, beside in ((truth, truth), (frame, frame)):
+        with pytest.raises(airlight.InputError, match="a frame may have a reference beside it, and nothing else"):
+            airlight.save(tmp_path / "f.exr", scene, result, beside)
+    assert not list(tmp_path.iterdir())
+    for pictures in ((theirs, truth), (theirs, frame)):
+        with pytest.raises(airlight.InputError, match="is not of the reference's scene"):
+            airlight.compare(*pictures)
+    # the numbers alone say nothing of where they come from
+    assert airlight.compare(theirs.composite, truth).rmse > 0
+
+
 def test_the_example_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     example = Path(airlight.__file__).parent / "examples" / "compare_techniques.py"
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "argv", [str(example), "--size", "32", "24", "--rel-error", "0.2"])
+    monkeypatch.setattr(sys, "argv", [str(example), "--size", "24", "16", "--rel-error", "0.2"])
     runpy.run_path(str(example), run_name="__main__")
     table = capsys.readouterr().out
-    assert all(name in table for name in ("sphere 32 x 24", "Weng2010", "Nishita1987"))
+    assert all(name in table for name in ("sphere 24 x 16", "Weng2010", "Nishita1987"))
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".exr", ".exr", ".png", ".png"]
+    monkeypatch.setattr(sys, "argv", [str(example), "--size", "0", "5"])
+    with pytest.raises(SystemExit) as end:
+        runpy.run_path(str(example), run_name="__main__")
+    assert end.value.code == 2
+    assert capsys.readouterr().err.startswith("An image of 0 x 5 pixels cannot be made")
 
 
 def test_what_cannot_be_used_is_one_exception(tmp_path: Path) -> None:

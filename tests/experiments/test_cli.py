@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import subprocess
 import sys
 from dataclasses import MISSING, fields
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +21,8 @@ from gpu_impl.techniques import Technique
 
 COMMANDS = ["doctor", "list", "render", "reference", "compare", "run"]
 EXECUTABLE = Path(sys.executable).parent / "airlight"
+# what Python makes of a byte that is not UTF-8
+NO_TEXT = os.fsdecode(b"\xff")
 SMALL = ["--size", "16", "16"]
 SUITE = 'scenes = ["empty"]\nsize = [16, 16]\n[[techniques]]\nname = "Weng2010"\n'
 
@@ -99,6 +104,19 @@ def picture(path: str, value: float = 1.0, size: tuple[int, int] = (4, 6), layer
         (["reference", "empty", "--time-limit", "-1", "--out", "a.exr"], "use a positive number"),
         (["reference", "empty", "--time-limit", "nan", "--out", "a.exr"], "use a positive number"),
         (["reference", "empty", "--out", "missing/a.exr"], "make it first"),
+        (["render", "empty", "-p", "g=1", "-p", "g=2", "--out", "a.exr"], "-p g is given twice; leave one out"),
+        (
+            ["render", "empty", "-p", f"g=0.{NO_TEXT}2", "--out", "a.exr"],
+            "-p g or its value holds bytes that are not UTF",
+        ),
+        (["render", "empty", "-p", f"{NO_TEXT}=2", "--out", "a.exr"], "or its value holds bytes that are not UTF-8"),
+        (["render", "empty", "--technique", NO_TEXT, "--out", "a.exr"], "There is no technique '?'"),
+        (["render", f"b{NO_TEXT}.xml", "--out", "a.exr"], "b\\xff.xml has a name that is not UTF-8; rename it"),
+        (["render", "empty", "--out", f"b{NO_TEXT}.exr"], "b\\xff.exr has a name that is not UTF-8; rename it"),
+        (["render", "--again", f"b{NO_TEXT}.exr"], "b\\xff-again.exr has a name that is not UTF-8; rename it"),
+        (["compare", "good.exr", f"b{NO_TEXT}.exr"], "b\\xff.exr has a name that is not UTF-8; rename it"),
+        (["run", f"b{NO_TEXT}.toml"], "b\\xff.toml has a name that is not UTF-8; rename it"),
+        (["run", "suite.toml", "--out", NO_TEXT], "\\xff has a name that is not UTF-8; rename it"),
         (["compare", "good.exr", "none.exr"], "There is no file none.exr"),
         (["compare", "none.exr", "good.exr"], "There is no file none.exr"),
         (["compare", "good.exr", "."], "There is no file ."),
@@ -149,13 +167,19 @@ def test_what_cannot_be_used_ends_in_one_sentence_and_code_2(airlight, words: li
         (SUITE.replace("[16, 16]", "[0, 16]"), "the key 'size.0'"),
         (SUITE.replace("[16, 16]", "[16]"), "the key 'size.1'"),
         (SUITE.replace("[16, 16]", "[16.5, 16]"), "the key 'size.0'"),
+        (SUITE + "steps = true", "the key 'techniques.0.steps'"),
+        (SUITE + "steps = 3.0", "the key 'techniques.0.steps'"),
+        (SUITE + '[reference]\nrel_error = "0.1"', "the key 'reference.rel_error'"),
+        (SUITE + "[parameters]\nsigma_t = true", "the key 'parameters.sigma_t"),
+        (SUITE + "a = " + "[" * 100_000, "is not a suite: its values are nested too deeply"),
         (SUITE.replace('"Weng2010"', "3"), "the key 'techniques.0.name'"),
         (SUITE + 'steps = "many"', "the key 'techniques.0.steps'"),
         (SUITE + "stepps = 3", "the key 'techniques.0.stepps'"),
         (SUITE + "[reference]\nrel_error = 0", "the key 'reference.rel_error'"),
         (SUITE + "[reference]\ntime_limit = -1", "the key 'reference.time_limit'"),
         (SUITE + "[parameters]\nsize = 3", "the key 'parameters'"),
-        (SUITE.replace('["empty"]', '["empty", "empty.xml"]'), "two scenes are called empty"),
+        (SUITE.replace('["empty"]', '["empty", "empty.xml"]'), "the key 'scenes': two scenes are called empty."),
+        (SUITE + '[[techniques]]\nname = "Weng2010"\nsteps = 128', "'techniques': Weng2010 stands there twice"),
         (SUITE.replace("Weng2010", "Nobody1999"), "There is no technique 'Nobody1999'"),
         (SUITE + "downsample = 3", "downsample is 3"),
         (SUITE + "steps = 0", "steps is 0"),
@@ -292,6 +316,49 @@ def test_compare_says_which_meshes_are_stand_ins(airlight, monkeypatch: pytest.M
     monkeypatch.setattr("experiments.compare.write_sheet", lambda *arguments: notes.append(arguments[-1]))
     assert airlight("compare", picture("t.exr"), "r.exr", "--heatmap", "h.png").code == 0
     assert notes == ["stand-in for dragon.ply"]
+
+
+def test_compare_warns_of_two_scenes(airlight) -> None:
+    for name, sigma in (("a.exr", "0.1"), ("b.exr", "0.2"), ("long.exr", "9" * 100_000)):
+        metadata = {"scene": "sphere", "scene_digest": sigma, "parameters": json.dumps({"sigma_t": sigma})}
+        write_exr(Path(name), {"composite": np.ones((4, 6, 3), np.float32)}, metadata)
+    result = airlight("compare", "a.exr", "b.exr", "--json")
+    assert result.code == 0
+    assert json.loads(result.out)["rmse"] == 0
+    for words in ("a.exr is of the scene sphere", '{"sigma_t": "0.1"}', "b.exr is of the scene", '{"sigma_t": "0.2"}'):
+        assert words in result.err
+    assert len(airlight("compare", "a.exr", "long.exr").err) < 1000
+    # one scene, or a file that does not say
+    assert airlight("compare", "a.exr", "a.exr").err == airlight("compare", "a.exr", picture("c.exr")).err == ""
+
+
+def test_a_reference_that_the_full_cache_cannot_keep_is_written_all_the_same(
+    airlight, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("reference.cache.np.savez", full)
+    result = airlight("reference", "empty", *SMALL, "--rel-error", "0.2", "--out", "r.exr")
+    assert result.code == 0
+    assert "The reference is not kept for the next time: " in result.err
+    assert "No space left on device" in result.err
+    assert read_exr(Path("r.exr"))[0]["composite"].any()
+    assert [path for path in (tmp_path / "cache").rglob("*") if path.is_file()] == []
+
+
+def test_a_name_that_the_terminal_cannot_show_is_no_matter(airlight, monkeypatch: pytest.MonkeyPatch) -> None:
+    streams = {name: TextIOWrapper(BytesIO(), "ascii") for name in ("stdout", "stderr")}
+    for name, stream in streams.items():
+        monkeypatch.setattr(sys, name, stream)
+    assert airlight("compare", picture("π.exr"), picture("b.exr"), "--heatmap", "π.png").code == 0
+    assert airlight("compare", "π.png", "b.exr").code == 2
+    for stream in streams.values():
+        stream.flush()
+    assert b"Heat map: ?.png\n" in streams["stdout"].buffer.getvalue()
+    assert streams["stderr"].buffer.getvalue().startswith(b"airlight: ?.png is not an OpenEXR file")
 
 
 def test_brackets_in_a_name_are_no_markup(airlight) -> None:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import json
+import os
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
-from mesh_server import serving, tar, whole
+from mesh_server import serving, stalled, tar, whole
 
 from experiments.meshes_cli import meshes_app
 from scenes.errors import InputError
@@ -93,6 +97,55 @@ def test_fetch_shows_terms_steps_and_path_and_the_list_then_knows(meshes: Run, m
         assert (row["from"], row["steps"][0]["step"], row["licence"]) == ("user data", "repair", "for research")
         assert "was there already" in meshes("fetch", "ball.ply")
         assert server.asked == ["/ball.tar.gz"]
+        Path(row["path"] + ".json").unlink()
+        monkeypatch.setitem(catalogue.MESHES, "ball.ply", dataclasses.replace(ball, reference_sha256=row["sha256"]))
+        assert f"{row['path']}: was there already, and is the reference copy\n" in meshes("fetch", "ball.ply")
+
+
+def test_the_list_is_shown_beside_a_damaged_note(meshes: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "spot.ply").write_bytes(BALL_PLY)
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    for text in ("[" * 200_000, '{"steps": [{}]}', "null"):
+        (tmp_path / "spot.ply.json").write_text(text)
+        assert listed(meshes)["spot.ply"]["steps"] == []
+
+
+TERMINATED = """
+import dataclasses, sys
+from experiments.meshes_cli import meshes_app
+from scenes.meshes import catalogue
+known = catalogue.MESHES["dragon_res3_fixed.ply"]
+here = dataclasses.replace(known.original, address=sys.argv[1])
+catalogue.MESHES["dragon_res3_fixed.ply"] = dataclasses.replace(known, original=here)
+meshes_app(["fetch", "dragon_res3_fixed.ply"], standalone_mode=False)
+"""
+
+
+def test_a_program_that_is_terminated_while_it_fetches_leaves_nothing_behind(tmp_path: Path) -> None:
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    folders = {"TMPDIR": str(temporary), "XDG_DATA_HOME": str(tmp_path / "data"), "NO_PROXY": "*"}
+    with serving() as server:
+        server.answers["/ball.tar.gz"] = stalled(np.random.default_rng(1).bytes(1_000_000), server)
+        process = subprocess.Popen(
+            [sys.executable, "-c", TERMINATED, f"{server.address}/ball.tar.gz"],
+            env=os.environ | folders,
+            stderr=subprocess.PIPE,
+        )
+        try:
+            patience = time.monotonic() + 60
+            while not list(temporary.rglob("*/*")) and time.monotonic() < patience:
+                assert process.poll() is None, process.stderr
+                time.sleep(0.02)
+            assert list(temporary.rglob("*/*"))
+            process.terminate()
+            _, said = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    assert process.returncode == 128 + signal.SIGTERM
+    assert b"Traceback" not in said
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+    assert list(temporary.iterdir()) == []
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import pytest
 
 from experiments import flip
 from experiments.metrics import measure, signed_relative_error
+from experiments.sheet import display, summary, write_sheet
 from scenes.errors import InputError
 
 
@@ -55,7 +56,11 @@ def test_pixels_darker_than_a_hundredth_of_the_lit_median_count_as_that_bright()
     np.testing.assert_allclose(error, grey(0.5 / 0.02, 0.0))
 
 
-def test_one_pixel_that_looks_into_a_light_does_not_hide_the_errors_of_the_others() -> None:
+def test_one_pixel_that_looks_into_a_light_does_not_hide_the_errors_of_the_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # its 18 exposures take two seconds
+    monkeypatch.setattr("experiments.metrics.hdr_flip", lambda *_: 0.0)
     reference, test = np.full((10, 10, 3), 0.05), np.full((10, 10, 3), 0.06)
     reference[5, 5] = test[5, 5] = 1e4
     assert measure(test, reference).rel_50 == pytest.approx(0.2)
@@ -65,10 +70,15 @@ def test_brightness_scales_out_of_what_is_relative() -> None:
     rng = np.random.default_rng(1)
     reference = rng.uniform(0, 2, (6, 6, 3))
     test = reference * rng.uniform(0.9, 1.1, (6, 6, 3))
-    small, large = (asdict(measure(test * s, reference * s)) for s in (1e-4, 1e4))
-    for name in ("rel_mse", "mean_rel", "rel_50", "rel_95", "rel_99", "image_mean_rel"):
-        assert small[name] == pytest.approx(large[name], rel=1e-9)
-    assert large["rmse"] == pytest.approx(1e8 * small["rmse"])
+    plain = asdict(measure(test, reference))
+    # the smallest are below float32's epsilon, where FLIP's own program ends the process, and close to its zero
+    for scale in (1e-35, 1e-12, 1e-4, 1e4):
+        scaled = asdict(measure(test * scale, reference * scale))
+        for name in ("rel_mse", "mean_rel", "rel_50", "rel_95", "rel_99", "image_mean_rel"):
+            assert scaled[name] == pytest.approx(plain[name], rel=1e-9)
+        # FLIP computes in float32; measured: 1.4e-5
+        assert scaled["flip"] == pytest.approx(plain["flip"], rel=1e-4)
+        assert scaled["rmse"] == pytest.approx(scale * plain["rmse"])
 
 
 def test_noise_of_the_reference_is_not_charged_to_the_technique() -> None:
@@ -100,6 +110,40 @@ def test_sizes_must_agree() -> None:
         measure(grey(1, 2), grey(1, 2, 3))
 
 
+@pytest.mark.parametrize("shape", [(4, 4), (4, 4, 2), (4, 4, 4), (0, 4, 3), (4,), (1, 4, 4, 3)])
+@pytest.mark.parametrize("place", range(3))
+def test_what_is_no_picture_is_refused(shape: tuple[int, ...], place: int) -> None:
+    pictures = [np.ones((4, 4, 3))] * 3
+    pictures[place] = np.ones(shape)
+    name = ("picture", "reference", "reference's standard error")[place]
+    with pytest.raises(InputError, match=f"The {name} is an array of the shape"):
+        measure(*pictures)
+    if place < 2:
+        # the same wrong shape for both
+        with pytest.raises(InputError, match="is an array of the shape"):
+            measure(np.ones(shape), np.ones(shape))
+
+
+def test_a_standard_error_has_the_references_size() -> None:
+    with pytest.raises(InputError, match="different sizes, 1 x 1 and 4 x 4 pixels"):
+        measure(np.ones((4, 4, 3)), np.ones((4, 4, 3)), np.ones((1, 1, 3)))
+
+
+def test_what_is_no_array_of_numbers_is_refused() -> None:
+    for nothing in ("a picture", [[1, 2], [3]], None):
+        with pytest.raises(InputError, match="give one of"):
+            measure(nothing, grey(1, 2))
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_sheet_of_negative_pictures_is_drawn(tmp_path: Path) -> None:
+    dark = -np.ones((4, 4, 3))
+    write_sheet(tmp_path / "a.png", "a", dark, 2 * dark, summary(asdict(measure(dark, 2 * dark))))
+    assert (tmp_path / "a.png").is_file()
+    # not a negative of itself
+    assert display(dark, dark).max() == 0
+
+
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("place", range(3))
 def test_values_that_are_not_finite_are_refused(value: float, place: int) -> None:
@@ -129,15 +173,41 @@ def flip_of_its_authors(test: np.ndarray, reference: np.ndarray) -> float:
     return float(np.mean(error_map, dtype=np.float64))
 
 
-def test_flip_is_its_authors_own() -> None:
+# the higher the power, the darker the median beside the brightest pixel, and the more exposures
+@pytest.mark.parametrize("power", [1, 6])
+def test_flip_is_its_authors_own(power: int) -> None:
     rng = np.random.default_rng(3)
-    reference = rng.uniform(0, 4, (24, 32, 3)).astype(np.float32)
+    reference = 4 * rng.uniform(0.1, 1, (24, 32, 3)).astype(np.float32) ** power
     test = (reference * rng.uniform(0.5, 1.5, reference.shape)).astype(np.float32)
     expected = flip_of_its_authors(test, reference)
     assert 0.01 < expected < 1
     # their mean is summed in float32
     assert measure(test, reference).flip == pytest.approx(expected, rel=1e-5)
     assert flip_evaluator.evaluate(reference, test, "HDR")[2]["ppd"] == pytest.approx(67.02, abs=0.01)
+
+
+def test_black_pixels_do_not_decide_flips_exposures() -> None:
+    rng = np.random.default_rng(6)
+    lit = rng.uniform(0.1, 1, (16, 16, 3)).astype(np.float32) ** 3
+    reference = np.pad(lit, ((0, 0), (0, 24), (0, 0)))
+    test = reference * rng.uniform(0.5, 1.5, reference.shape).astype(np.float32)
+    alone = flip_evaluator.evaluate(lit, lit, "HDR", True, False, True, {})[2]
+    exposures = {name: alone[name] for name in ("startExposure", "stopExposure")}
+    # their median of a picture that is mostly black is 0
+    assert (
+        alone["numExposures"]
+        < flip_evaluator.evaluate(reference, test, "HDR", True, False, True, {})[2]["numExposures"]
+    )
+    expected = flip_evaluator.evaluate(reference, test, "HDR", True, False, True, exposures)[1]
+    assert flip.hdr_flip(test, reference) == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("brightness", [0.0, 1.0, 1e30])
+def test_flip_of_one_colour_is_a_number(brightness: float) -> None:
+    ones = np.ones((4, 4, 3))
+    assert flip.hdr_flip(ones, ones) == 0
+    found = [flip.hdr_flip(ones * brightness, ones * 1e-3), flip.hdr_flip(-ones, ones)]
+    assert all(0 < value <= 1 for value in found)
 
 
 def test_flip_is_remembered_and_the_same(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
