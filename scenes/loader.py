@@ -56,8 +56,8 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
         # Mitsuba would take an empty number for 0
         if not text:
             raise InputError(f"The parameter {name} of {path} was given no value; give one or leave it out.")
-        if not is_text(text):
-            raise InputError(f"The value of the parameter {name} of {path} is not UTF-8; correct it.")
+        if not is_text(name + text):
+            raise InputError(f"The parameter {name!a} of {path} is not UTF-8, or its value is not; correct it.")
         if name in RESERVED:
             raise InputError(f"{path} cannot be given a parameter called {name}; rename it in the scene.")
     state = parse(path, texts)
