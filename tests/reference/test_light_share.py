@@ -11,9 +11,7 @@ import numpy as np
 import pytest
 from scene_files import point
 
-from reference.convergence import converge
 from reference.estimators import Equiangular
-from reference.goal import Goal
 from scenes.loader import load
 from scenes.model import Scene
 
@@ -52,13 +50,3 @@ def test_light_is_attenuated_over_its_share_of_the_way(lamp: float, share: float
     exact = 0.5 / np.pi * 10 * (to_lamp[..., 1] / d) / d**2 * np.exp(-SIGMA_T * (t + leg))
     surface = Equiangular(scene, light_share=share).fixed()["surface"]
     np.testing.assert_allclose(surface, np.repeat(exact[..., None], 3, axis=-1), rtol=1e-5)
-
-
-def test_so_is_light_that_the_fog_scatters(tmp_path: Path) -> None:
-    scene = box_of_fog(tmp_path, 3.0)
-    whole, half, none = (
-        converge(Equiangular(scene, light_share=share), Goal(rel_error=0.999)).image_mean["scattering"].mean()
-        for share in (1.0, 0.25, 0.0)
-    )
-    print(whole, half, none)
-    assert whole < half < none

@@ -1,4 +1,4 @@
-"""Pictures, directional lights, lenses, instances and search paths, as loaded, against Mitsuba's own objects."""
+"""Pictures, directional lights, lenses, instances, near planes and search paths, as loaded, against Mitsuba's own."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from slab import VIEWS, slab_scene
 
 from reference.integrator import dr, mi
 from reference.mitsuba_scene import instantiate
+from scenes.errors import InputError
 from scenes.loader import load
 from scenes.model import Scene
 
@@ -120,3 +121,33 @@ def test_instances_lie_where_mitsuba_has_them(tmp_path: Path) -> None:
         a, b, c = (mesh.vertices[mesh.faces[:, k]].astype(np.float64) for k in range(3))
         outward = (np.cross(b - a, c - a) * mesh.normals[mesh.faces[:, 0]]).sum(-1)
         assert (outward > 0).all()
+
+
+def hazy_box(folder: Path, corner: str, inside: bool) -> Path:
+    """A camera at the origin that looks along -z, its near plane's corners at (+-1, +-1, -1), and a box of fog."""
+    path = folder / "scene.xml"
+    path.write_text(
+        f"""<scene version='3.0.0'><medium type='homogeneous' id='fog'/>
+          <shape type='cube'><bsdf type='null'/><ref name='interior' id='fog'/>{corner}</shape>{LAMP}
+          <sensor type='perspective'><float name='fov' value='90'/><float name='near_clip' value='1'/>
+            <transform name='to_world'><lookat origin='0, 0, 0' target='0, 0, -1' up='0, 1, 0'/></transform>
+            <film type='hdrfilm'><integer name='width' value='4'/><integer name='height' value='4'/></film>
+            {"<ref id='fog'/>" * inside}</sensor></scene>"""
+    )
+    return path
+
+
+@pytest.mark.parametrize("x", [-1, 1])
+@pytest.mark.parametrize("y", [-1, 1])
+def test_each_corner_of_the_near_plane_counts(x: int, y: int, tmp_path: Path) -> None:
+    # boxes of half-width 0.3 at the corner, and just beyond it
+    box = "<transform name='to_world'><scale value='0.3'/><translate x='{}' y='{}' z='-1'/></transform>"
+    with pytest.raises(InputError, match="near plane that cuts the shape"):
+        load(hazy_box(tmp_path, box.format(1.2 * x, 1.2 * y), inside=False))
+    assert load(hazy_box(tmp_path, box.format(1.4 * x, 1.2 * y), inside=False)).boundary is not None
+    # a box that holds all of the near plane, and one that leaves one corner out
+    large = """<transform name='to_world'><scale value='2'/><rotate z='1' angle='45'/><translate x='{}' y='{}'/>
+        </transform>"""
+    assert load(hazy_box(tmp_path, large.format(0, 0), inside=True)).boundary is not None
+    with pytest.raises(InputError, match="near plane that cuts the shape"):
+        load(hazy_box(tmp_path, large.format(-0.8 * x, -0.8 * y), inside=True))
