@@ -62,7 +62,7 @@ def manifest(path: Path = PATH) -> Manifest:
     ------
     InputError   it is missing, or is not what scripts/freeze_scenes.py writes
     """
-    # a fifth of what drawing a small scene takes; only who asks for a version needs it
+    # here, as its import takes longer than that of the rest of this module
     from pydantic import TypeAdapter, ValidationError
 
     try:
@@ -119,8 +119,9 @@ def _kinds_of_meshes(reference: list[str], fetched: list[str], stand_ins: list[s
         return " (reference meshes)" if reference else ""
     if not reference and not (fetched and stand_ins):
         return " (fetched meshes)" if fetched else " (stand-ins)"
-    parts = (("fetched", fetched), ("stand-ins for", stand_ins))
-    return f" ({'; '.join(f'{kind} {', '.join(sorted(names))}' for kind, names in parts if names)})"
+    kinds = (("fetched", fetched), ("stand-ins for", stand_ins))
+    parts = [f"{kind} {', '.join(sorted(names))}" for kind, names in kinds if names]
+    return f" ({'; '.join(parts)})"
 
 
 def included(scene: Scene) -> list[str]:

@@ -3,27 +3,32 @@
     AIRLIGHT_MESH_DIR=folder/of/the/meshes .venv/bin/python scripts/freeze_scenes.py
 
 A scene of which anything differs from what the manifest has (its file, a mesh, a phase function) gets the next
-number.
-Without AIRLIGHT_MESH_DIR the meshes that are not of our making keep the hashes they have.
+number; they count from the first release of the manifest.
+Without AIRLIGHT_MESH_DIR the meshes that are not of our making keep the hashes they have. The hash of a fetched mesh
+comes from the one in the user's data folder, where its note says that it was made as the catalogue has it today; one
+that was not known before changes no number.
 """
 
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from scenes import InputError, load
 from scenes.catalogue import FOLDER, shipped
 from scenes.manifest import PATH, FrozenMesh, Manifest, manifest, text_sha256
-from scenes.meshes.files import sha256
+from scenes.meshes.catalogue import made_as_now
+from scenes.meshes.files import sha256, user_folder
+from scenes.meshes.notes import read_note
 from scenes.meshes.procedural import RECIPES
 from scenes.replacing import replacing
 
 
 def main() -> None:
     """Freeze the scenes as they are."""
-    old = manifest() if PATH.is_file() else Manifest({}, {}, {})
     try:
+        old = manifest() if PATH.is_file() else Manifest({}, {}, {})
         new = freeze(old)
     except InputError as error:
         print(error, file=sys.stderr)
@@ -53,7 +58,7 @@ def freeze(old: Manifest) -> Manifest:
         same = (
             not shared
             and files[f"{name}.xml"] == old.files.get(f"{name}.xml")
-            and all(old.meshes.get(mesh) == frozen for mesh, frozen in here.items())
+            and all(_same_mesh(old.meshes.get(mesh), frozen) for mesh, frozen in here.items())
         )
         versions[name] = old.versions.get(name, 0) + (not same)
         meshes |= here
@@ -65,11 +70,26 @@ def _frozen(name: str, path: Path, old: Manifest) -> FrozenMesh:
     ours = recipe.sha256 if recipe else None
     if recipe and not recipe.stands_in:
         return FrozenMesh(ours=ours)
-    found = sha256(path)
-    reference = found if found != ours else old.meshes.get(name, FrozenMesh()).reference
+    known, fetched, found = old.meshes.get(name, FrozenMesh()), _fetched(name), sha256(path)
+    reference = known.reference if found in (ours, fetched, known.fetched) else found
     if reference is None:
-        raise InputError(f"The mesh '{name}' is here only as a stand-in; set AIRLIGHT_MESH_DIR to the folder it is in.")
-    return FrozenMesh(reference, ours)
+        raise InputError(
+            f"The mesh '{name}' is here only as a stand-in or as it is fetched; set AIRLIGHT_MESH_DIR to the folder of "
+            "the one that is meant."
+        )
+    return FrozenMesh(reference, fetched or known.fetched, ours)
+
+
+def _fetched(name: str) -> str | None:
+    """Hash of the fetched mesh in the user's data folder, if it was made from the original by the steps of today."""
+    path = user_folder() / name
+    note = read_note(path) if path.is_file() else None
+    return note.sha256 if note and note.name == name and made_as_now(note) else None
+
+
+def _same_mesh(old: FrozenMesh | None, new: FrozenMesh) -> bool:
+    # where no original had been at hand, nobody can hold a result under the hash that is known now
+    return old is not None and old in (new, replace(new, fetched=None))
 
 
 def to_toml(frozen: Manifest) -> str:
@@ -78,10 +98,13 @@ def to_toml(frozen: Manifest) -> str:
     lines += [f"{name} = {number}" for name, number in frozen.versions.items()]
     lines += ["", "# SHA-256 of the text", "[files]"]
     lines += [f'"{name}" = "{found}"' for name, found in frozen.files.items()]
-    lines += ["", "# SHA-256 of the bytes of the mesh that is meant, and of the one that our code makes"]
+    lines += [
+        "",
+        "# SHA-256 of the bytes of the mesh that is meant, of the fetched one, of the one that our code makes",
+    ]
     for name, mesh in frozen.meshes.items():
         lines += ["", f'[meshes."{name}"]']
-        lines += [f'{key} = "{value}"' for key in ("reference", "ours") if (value := getattr(mesh, key))]
+        lines += [f'{key} = "{value}"' for key in ("reference", "fetched", "ours") if (value := getattr(mesh, key))]
     return "\n".join(lines) + "\n"
 
 

@@ -52,7 +52,7 @@ class Fetched:
     ----------
     path : Path    the PLY file; its note is beside it (scenes.meshes.notes)
     note : Note    what its note says; None for the reference copy, which the user put there
-    fresh : bool   False where it was there already: made from the same original by the same steps, or the reference copy
+    fresh : bool   False where it was there already: from the same original by the same steps, or the reference copy
     """
 
     path: Path
@@ -124,7 +124,7 @@ def _already_there(name: str) -> Fetched | None:
         if catalogue.is_reference_copy(MeshFile(name, path, "user data")):
             return Fetched(path, None, fresh=False)
     raise InputError(
-        f"{path} is there already and is not airlight's; move it away, for instance into a folder that {VARIABLE} names."
+        f"{path} is there already and is not airlight's; move it away, such as into a folder that {VARIABLE} names."
     )
 
 

@@ -25,8 +25,10 @@ from pathlib import Path
 WORKERS = 2
 LOCK = threading.Lock()
 # for a worker to start, and for a case: the slowest took 5 s, where an LLVM compiled its first kernels
-START = 60.0
-PATIENCE = 30.0
+START = 120.0
+PATIENCE = 60.0
+# for a run, however slow the machine: it has to end where every case hangs
+LIMIT = 900.0
 
 
 @dataclass
@@ -99,14 +101,12 @@ class Worker:
         self.process.communicate()
 
 
-def fuzz(
-    cases: list[str], seed: int, keep: Path | None, patience: float = PATIENCE, limit: float = float("inf")
-) -> Report:
+def fuzz(cases: list[str], seed: int, keep: Path | None, patience: float = PATIENCE, limit: float = LIMIT) -> Report:
     """Run cases such as "scene 17", each reproducible from its number and the seed.
 
     Parameters
     ----------
-    keep : folder for the files of the cases that failed
+    keep : folder for the files of the cases that failed, and all that they name
     patience : how long a case may take [s]
     limit : after which no case is begun [s]
     """
@@ -164,12 +164,10 @@ def _work(
 
 
 def _keep(folder: Path, target: Path, case: str, fault: str) -> None:
-    """Save what is needed to see a fault again."""
-    target.mkdir(parents=True, exist_ok=True)
-    kind, number = case.split()
-    for name in (f"{kind}{number}.xml", f"mesh{number}.ply", f"mesh{number}.obj"):
-        if (folder / name).exists():
-            shutil.copy(folder / name, target)
+    """Move what a case wrote to where it is kept, with copies of the files that scenes name."""
+    shutil.copytree(folder, target, dirs_exist_ok=True)
+    for file in folder.glob(f"{case.replace(' ', '')}.*"):
+        file.unlink()
     (target / "fault.txt").write_text(fault, encoding="utf-8")
 
 
@@ -180,10 +178,10 @@ def main() -> int:
     parser.add_argument("--scenes", type=int, default=2000)
     parser.add_argument("--meshes", type=int, default=200)
     parser.add_argument("--case", action="append", help='only this one, such as "scene 17"; may be repeated')
-    parser.add_argument("--keep", type=Path, help="folder for the files of the cases that failed")
+    parser.add_argument("--keep", type=Path, help="folder for the cases that failed, each with all that it names")
     given = parser.parse_args()
     cases = given.case or all_cases(given.scenes, given.meshes)
-    report = fuzz(cases, given.seed, given.keep)
+    report = fuzz(cases, given.seed, given.keep, limit=float("inf"))
     for case, fault in report.faults:
         print(f"--- {case}\n{fault}")
     print(f"{report.seconds:.1f} s", dict(report.ends), report.slowest, sep="\n")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import faulthandler
 import json
 import os
@@ -22,17 +23,24 @@ import mutations
 import numpy as np
 import seeds
 
+from experiments.exr import read_exr
+from experiments.pictures import write_frame
+from gpu_impl.frame import Frame
 from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import Technique
 from reference.estimators import default_estimator
 from reference.mitsuba_scene import instantiate
+from scenes.catalogue import shipped
 from scenes.errors import InputError
 from scenes.loader import load
+from scenes.manifest import frozen_version
 from scenes.model import Scene
 
 TECHNIQUE = Technique("lit_intervals+quadrature", "lit_intervals", "quadrature", steps=16, shadow_map=64)
 # one case in so many is also estimated, which compiles kernels of its own
 REFERENCE_EVERY = 10
+# one in so many is also written to a file; 7 has no factor in common with the others
+WRITE_EVERY = 7
 MOST_PIXELS = 64 * 64
 MEMORY = 4 << 30
 LONGEST_SENTENCE = 1500
@@ -64,11 +72,11 @@ def write_case(folder: Path, kind: str, number: int, seed: int) -> tuple[Path, l
 
 
 def run_case(path: Path, kind: str, number: int) -> str:
-    """Load, draw, and instantiate; "picture" or "sentence".
+    """Load, draw, instantiate and, of some, estimate and write; "picture" or "sentence".
 
     Raises
     ------
-    FaultError   the sentence is none, or the picture has pixels that are not finite
+    FaultError   the sentence is none, the picture has pixels that are not finite, or its file is not what was drawn
     """
     size = None if number % 5 == 0 else (16, 12)
     try:
@@ -76,13 +84,16 @@ def run_case(path: Path, kind: str, number: int) -> str:
         if scene.camera.width * scene.camera.height > MOST_PIXELS:
             return "picture"
         with Renderer(scene) as renderer:
-            composite = renderer.render(TECHNIQUE).composite
+            frame = renderer.render(TECHNIQUE)
         instantiate(scene)
         if number % REFERENCE_EVERY == 0:
             _estimate(scene)
+        if number % WRITE_EVERY == 0:
+            _write(scene, frame)
     except InputError as error:
         _judge(str(error), path.parent)
         return "sentence"
+    composite = frame.composite
     if composite.shape[2:] != (3,) or not np.isfinite(composite).all():
         raise FaultError(f"a picture of shape {composite.shape} with pixels that are not finite")
     return "picture"
@@ -93,6 +104,20 @@ def _estimate(scene: Scene) -> None:
     for layer, image in (estimator.fixed() | estimator.one_pass(1)).items():
         if not np.isfinite(image).all():
             raise FaultError(f"the reference's {layer} is not finite")
+
+
+def _write(scene: Scene, frame: Frame) -> None:
+    """Name the version as if the scene were one of the shipped ones; write what was drawn, and read it back."""
+    version = frozen_version(dataclasses.replace(scene, name=shipped()[0]))
+    if not version.startswith("unfrozen: "):
+        raise FaultError(f"a spoilt scene is called {version}")
+    path = scene.path.with_suffix(".exr")
+    write_frame(path, scene, frame)
+    layers, _ = read_exr(path)
+    path.unlink()
+    for name, image in frame.layers.items():
+        if not np.array_equal(layers[name], image):
+            raise FaultError(f"the EXR file's {name} is not what was drawn")
 
 
 def _judge(sentence: str, folder: Path) -> None:

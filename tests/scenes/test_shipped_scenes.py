@@ -17,10 +17,12 @@ from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import find_technique
 from scenes import manifest as manifest_module
 from scenes.catalogue import FOLDER, shipped
+from scenes.errors import InputError
 from scenes.loader import load
-from scenes.manifest import FrozenMesh, frozen_version, manifest
+from scenes.manifest import FrozenMesh, Manifest, frozen_version, manifest
 from scenes.meshes.catalogue import MESHES
-from scenes.meshes.files import sha256
+from scenes.meshes.files import sha256, user_folder
+from scenes.meshes.notes import Note, StepRecord, note_path
 from scenes.meshes.procedural import RECIPES
 from scenes.meshes.triangles import Triangles, ply_bytes
 from scenes.model import Scene
@@ -177,6 +179,38 @@ def test_the_reference_meshes_are_known_by_their_hash(tmp_path: Path, monkeypatc
     assert len(others) == 7
     assert frozen_version(load("many_objects")) == f"{many_objects} (stand-ins for {', '.join(others)})"
 
+    made = FrozenMesh(reference="other", fetched=here.reference, ours="none")
+    pretended = replace(held, meshes=held.meshes | {"dragon_97k_fixed.ply": made, "spot.ply": made})
+    assert frozen_version(load("dragon")) == f"{dragon} (fetched meshes)"
+    assert (
+        frozen_version(load("many_objects")) == f"{many_objects} (fetched spot.ply; stand-ins for {', '.join(others)})"
+    )
+    both = FrozenMesh(reference=here.reference, fetched=here.reference, ours="none")
+    pretended = replace(held, meshes=held.meshes | {"dragon_97k_fixed.ply": both})
+    assert frozen_version(load("dragon")) == f"{dragon} (reference meshes)"
+
+
+def test_a_manifest_that_is_missing_or_damaged_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "manifest.toml"
+    good = manifest_module.PATH.read_text()
+    with pytest.raises(InputError, match=rf"^{path} cannot be read \(No such file or directory\): .*make setup"):
+        manifest.__wrapped__(path)
+    damages = {
+        "[versions": "Expected",
+        good.replace("[files]", "[other]"): "files",
+        good.replace("slit = 1", 'slit = "one"'): r"versions\.slit",
+        good.replace("dragon = 1", "dragon = 1\ndragon = 1"): "Cannot overwrite",
+        "versions = 1\nfiles = 2\nmeshes = 3\n": "versions",
+        "a = " + "[" * 100_000: "",
+    }
+    for text, reason in damages.items():
+        path.write_text(text)
+        with pytest.raises(InputError, match=rf"^{path} is damaged \(.*{reason}.*\): .*make setup"):
+            manifest.__wrapped__(path)
+    path.write_bytes(b"\xff\xfe")
+    with pytest.raises(InputError, match="is damaged"):
+        manifest.__wrapped__(path)
+
 
 def test_a_changed_number_is_no_frozen_scene(tmp_path: Path) -> None:
     shutil.copytree(FOLDER / "phase", tmp_path / "phase")
@@ -217,6 +251,40 @@ def test_freezing_numbers_what_changed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert changed == {"slit", "many_objects"}
     everything = script["freeze"](replace(held, files=held.files | {"phase/hg.xml": "other"})).versions
     assert all(number == held.versions[name] + 1 for name, number in everything.items())
+    # as it is from the first release on: a number goes on from whatever it was
+    later = replace(held, versions={name: 7 for name in held.versions}, files=held.files | {"slit.xml": "other"})
+    assert script["freeze"](later).versions == {name: 8 if name == "slit" else 7 for name in held.versions}
+    assert script["freeze"](Manifest({}, {}, held.meshes)).versions == dict.fromkeys(held.versions, 1)
+
+
+def test_freezing_takes_the_hash_of_a_fetched_mesh_from_its_note(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("AIRLIGHT_MESH_DIR", raising=False)
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    freeze = runpy.run_path(str(SCRIPTS / "freeze_scenes.py"))["freeze"]
+    name, held = "dragon_97k_fixed.ply", manifest()
+    known, path = MESHES[name], user_folder() / name
+    assert known.original
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32)
+    path.parent.mkdir(parents=True)
+    path.write_bytes(ply_bytes(Triangles(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], np.uint32))))
+    steps = [StepRecord(step=s.name, parameters=s.parameters, made_by={}, vertices=4, polygons=4) for s in known.steps]
+    words = dict.fromkeys(("what", "credit", "licence", "origin", "page", "address", "member", "airlight", "date"), "")
+    original = known.original.sha256
+    note = Note(name=name, original_sha256=original, steps=steps, triangles=4, sha256=sha256(path), **words)
+    note_path(path).write_text(note.model_dump_json())
+
+    unknown = replace(held, meshes=held.meshes | {name: replace(held.meshes[name], fetched=None)})
+    found = freeze(unknown)
+    assert found.meshes[name] == replace(held.meshes[name], fetched=sha256(path))
+    assert found.versions == held.versions
+    # another one under the same number would be two meshes under one name
+    numbered = freeze(held).versions
+    assert {name for name, number in numbered.items() if number != held.versions[name]} == {"dragon", "donut_dragon"}
+    # made otherwise than the catalogue has it: no fetched mesh, but one that somebody means
+    note_path(path).write_text(note.model_copy(update={"steps": steps[:1]}).model_dump_json())
+    assert freeze(unknown).meshes[name] == FrozenMesh(sha256(path), None, held.meshes[name].ours)
 
 
 def test_the_manifest_says_in_toml_what_it_holds(tmp_path: Path) -> None:

@@ -125,6 +125,23 @@ def test_a_missing_mesh_folder_is_refused(tmp_path: Path, monkeypatch: pytest.Mo
         find_mesh("torus.ply", tmp_path)
 
 
+@pytest.mark.parametrize(("owner", "cure"), [("folder", "AIRLIGHT_MESH_DIR"), ("data", "XDG_DATA_HOME")])
+@pytest.mark.parametrize("missing", [os.R_OK, os.X_OK])
+def test_a_folder_that_may_not_be_read_is_refused_and_no_stand_in_serves(
+    owner: str, cure: str, missing: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The permission is denied by hand, as root has every one."""
+    folders = {"folder": tmp_path / "folder", "data": tmp_path / "data" / "airlight" / "meshes"}
+    for folder in folders.values():
+        written(folder / "teapot.ply", ascii_ply())
+    monkeypatch.setenv("AIRLIGHT_MESH_DIR", str(folders["folder"]))
+    assert find_mesh("teapot.ply", tmp_path).origin == "mesh folder"
+    monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != folders[owner] or not mode & missing)
+    for look in (available, lambda: find_mesh("teapot.ply", tmp_path)):
+        with pytest.raises(InputError, match=rf"{folders[owner]} is not readable.*{cure}"):
+            look()
+
+
 def test_a_cache_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
     written(tmp_path / "cache", "a file where the folder should be")
     with pytest.raises(InputError, match=r"cannot be made.*XDG_CACHE_HOME"):
