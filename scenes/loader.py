@@ -19,9 +19,8 @@ from scenes.lights import load_light
 from scenes.materials import load_material
 from scenes.media import Fog, load_medium, load_phase, take_fog
 from scenes.meshes.files import sha256
-from scenes.mitsuba_setup import mitsuba
 from scenes.model import Array, Mesh, Scene
-from scenes.parsing import READ_FILES, drop, parse
+from scenes.parsing import READ_FILES, drop, parse, reached
 from scenes.shapes import Shape, instance_of, load_shape
 from scenes.textures import load_texture
 from scenes.xml_nodes import Node
@@ -191,25 +190,13 @@ def _members(group: Node, folder: Path) -> list[Shape]:
     return [load_shape(node, folder, node.props.id()) for node in nodes]
 
 
-def _reached(state: Any) -> list[Any]:
-    """Nodes of the parse that the scene still holds; what was dropped names files that nobody reads."""
-    found: dict[int, Any] = {}
-    waiting = [0]
-    while waiting:
-        index = waiting.pop()
-        if index not in found:
-            found[index] = node = state.nodes[index]
-            values = (node.props[name] for name in node.props.keys())  # noqa: SIM118
-            waiting += [value.index() for value in values if isinstance(value, mitsuba().Properties.ResolvedReference)]
-    return list(found.values())
-
-
 def _digest(state: Any) -> str:
     """Hash of the parsed scene, with the contents of meshes and pictures in place of their paths."""
     import mitsuba.parser as parser
 
     paths = {}
-    for node in _reached(state):
+    # what was dropped names files that nobody reads
+    for node in reached(state).values():
         if node.props.plugin_name() in READ_FILES and "filename" in node.props:
             # by content: the same mesh in another folder is the same scene
             paths[node] = node.props["filename"]

@@ -69,17 +69,24 @@ def _find_in(folders: list[Any], state: Any) -> None:
                 node.props["filename"] = str(found[0].absolute())
 
 
-def _check_all_reached(state: Any) -> None:
-    """Refuse a nested plugin that a later one of the same name replaced: Mitsuba's parser says nothing."""
-    reached, waiting = set(), [0]
+def reached(state: Any) -> dict[int, Any]:
+    """Nodes of the parse that the scene holds, by their index."""
+    found: dict[int, Any] = {}
+    waiting = [0]
     while waiting:
         index = waiting.pop()
-        if index not in reached:
-            reached.add(index)
-            values = (value for _, value in state.nodes[index].props.items())
+        if index not in found:
+            found[index] = node = state.nodes[index]
+            values = (value for _, value in node.props.items())
             waiting += [value.index() for value in values if isinstance(value, mitsuba().Properties.ResolvedReference)]
+    return found
+
+
+def _check_all_reached(state: Any) -> None:
+    """Refuse a nested plugin that a later one of the same name replaced: Mitsuba's parser says nothing."""
+    held = reached(state)
     for index in range(len(state.nodes)):
-        if index not in reached:
+        if index not in held:
             raise Node(state, index).refuse("is replaced by a later one of the same name beside it; leave one out.")
 
 
