@@ -16,8 +16,11 @@ def one_sentence(path: Path, message: str) -> str:
     if any("unused parameters" in line for line in lines):
         names = ", ".join(line.removeprefix("- ").split("=")[0] for line in lines if line.startswith("- "))
         return f"{path} has no use for the parameter {names} with these settings; correct its name or leave it out."
-    innermost = next(line for line in reversed(lines) if line).removeprefix("Error while loading ").removeprefix("At ")
-    innermost = readable(innermost).rstrip(".!")
+    innermost = next((line for line in reversed(lines) if any(map(str.isalpha, line))), "")
+    if not innermost:
+        # some builds of Python drop a message that quotes bytes of another encoding
+        return f"{path}: Mitsuba refuses it, and why cannot be read; check that it is UTF-8."
+    innermost = readable(innermost.removeprefix("Error while loading ").removeprefix("At ")).rstrip(".!")
     return innermost + "." if path.name in innermost else f"{path}: {innermost}."
 
 
