@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from types import TracebackType
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
-from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TransferSpeedColumn
+from rich.progress import BarColumn, DownloadColumn, TextColumn, TransferSpeedColumn
 from rich.table import Table
 
-from experiments.console import notices, say
+from experiments.bars import Bars
+from experiments.console import say
 from scenes.meshes import catalogue, procedural
 from scenes.meshes.fetch import Watcher
 from scenes.meshes.files import VARIABLE, MeshFile, available, sha256
@@ -70,23 +70,12 @@ def meshes_table(rows: list[dict[str, Any]]) -> Table:
     return table
 
 
-class FetchWatcher(Watcher):
+class FetchWatcher(Bars, Watcher):
     """A bar while an archive comes, a line a step after it; a context manager."""
 
     def __init__(self) -> None:
-        self._progress = Progress(
-            TextColumn("{task.description}"), BarColumn(), DownloadColumn(), TransferSpeedColumn(), console=notices
-        )
+        super().__init__(TextColumn("{task.description}"), BarColumn(), DownloadColumn(), TransferSpeedColumn())
         self._tasks: dict[str, Any] = {}
-
-    def __enter__(self) -> FetchWatcher:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._progress.live.is_started:
-            self._progress.stop()
 
     def downloading(self, address: str, done: int, total: int) -> None:
         """Move the bar of an archive."""

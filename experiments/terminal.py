@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from types import TracebackType
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
-from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from experiments.console import notices, warn
+from experiments.bars import Bars
+from experiments.console import warn
 from experiments.metrics import Metrics
 from experiments.runner import Row, Watcher
 from reference.convergence import Progress as Convergence
@@ -20,31 +20,21 @@ from scenes.mitsuba_setup import mitsuba
 from scenes.model import Scene
 
 
-class TerminalWatcher(Watcher):
+class TerminalWatcher(Bars, Watcher):
     """Progress bars for a run or for one reference; a context manager."""
 
     def __init__(self, rel_error: float) -> None:
         self._rel_error = rel_error
-        self._progress = Progress(
+        super().__init__(
             SpinnerColumn(),
             TextColumn("{task.description:<34}"),
             BarColumn(),
             TaskProgressColumn(),
             TimeElapsedColumn(),
             TextColumn("{task.fields[note]}"),
-            console=notices,
         )
         self._cases: Any = None
         self._estimate: Any = None
-
-    def __enter__(self) -> TerminalWatcher:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._progress.live.is_started:
-            self._progress.stop()
 
     def _bar(self, description: str, total: float) -> Any:
         # the first bar opens the display: a command that is refused before it leaves no empty line
