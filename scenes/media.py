@@ -56,7 +56,7 @@ PHASES: dict[str, tuple[str, Callable[[Node], dict]]] = {
     "rayleigh": ("rayleigh", lambda node: {}),
     "hg": ("hg", lambda node: {"g": node.number("g", 0.8)}),
     "schlick": ("schlick", lambda node: {"k": node.number("k", 0.5)}),
-    "cornette_shanks": ("cornette_shanks", lambda node: {"g": node.number("g", 0.6)}),
+    "cornette_shanks": ("cornette_shanks", lambda node: {"g": node.number("g", 0.8)}),
     "tabphase": ("tabulated", lambda node: {"values": _table(node)}),
 }
 

@@ -12,6 +12,7 @@ from reference.integrator import dr, mi
 from reference.mitsuba_scene import instantiate
 from scenes.errors import InputError
 from scenes.loader import load
+from scenes.media import PHASES
 from scenes.model import Scene
 
 CAMERA = """<sensor type='perspective'>{lens}<film type='hdrfilm'><integer name='width' value='30'/>
@@ -44,6 +45,29 @@ def test_a_directional_light_travels_as_mitsubas(tmp_path: Path) -> None:
     assert light.direction == pytest.approx(-np.array(ds.d).ravel(), abs=1e-6)
     assert light.intensity == pytest.approx(np.array(weight).ravel(), rel=1e-6)
     assert np.linalg.det(light.to_world[:3, :3]) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("plugin", sorted(PHASES.keys() - {"tabphase"}))
+def test_a_phase_function_that_is_told_nothing_is_mitsubas(plugin: str, tmp_path: Path) -> None:
+    path = written(tmp_path, "")
+    path.write_text(path.read_text().replace("id='fog'/>", f"id='fog'><phase type='{plugin}'/></medium>", 1))
+    scene = load(path)
+    cosine = np.linspace(-1, 1, 9)
+    mei = dr.zeros(mi.MediumInteraction3f, 9)
+    mei.wi = mi.Vector3f(0, 0, -1)
+    mei.sh_frame = mi.Frame3f(mei.wi)
+    wo = mi.Vector3f(np.stack([np.sqrt(1 - cosine**2), np.zeros(9), cosine]).astype(np.float32))
+    held = instantiate(scene).medium.phase_function().eval_pdf(mi.PhaseFunctionContext(None), mei, wo)[1]
+    np.testing.assert_allclose(np.broadcast_to(np.array(held), 9), scene.phase.evaluate(cosine), rtol=1e-5)
+
+
+def test_a_phong_surface_that_is_told_nothing_is_the_plugins(tmp_path: Path) -> None:
+    scene = load(written(tmp_path, "<shape type='cube' id='box'><bsdf type='phong'/></shape>"))
+    held = mi.traverse(instantiate(scene).scene)
+    material = scene.meshes[0].material
+    assert material.diffuse == pytest.approx(np.full(3, float(held["box.bsdf.diffuse_reflectance.value"][0])))
+    assert material.specular == pytest.approx(np.full(3, float(held["box.bsdf.specular_reflectance.value"][0])))
+    assert material.exponent == pytest.approx(float(held["box.bsdf.exponent"][0]))
 
 
 def picture(folder: Path, linear: bool) -> str:
