@@ -12,6 +12,7 @@ import typer
 from experiments.meshes_cli import meshes_app
 from experiments.options import (
     SCENE_HELP,
+    TYPER_STYLE,
     Parameters,
     RelError,
     SceneArgument,
@@ -32,13 +33,7 @@ CHECK_GOAL = Goal(rel_error=0.05, time_limit=30.0)
 app = typer.Typer(
     name="airlight",
     help="How accurate a real-time volumetric-shadow technique is, where its error comes from, and what it costs.",
-    # plain help: rich's own costs three times the start-up
-    rich_markup_mode=None,
-    add_completion=False,
-    # a defect of ours shows as a plain traceback, which can be pasted into an issue
-    pretty_exceptions_enable=False,
-    no_args_is_help=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    **TYPER_STYLE,
 )
 app.add_typer(meshes_app)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from experiments.options import TYPER_STYLE
 from scenes.errors import InputError
 
 if TYPE_CHECKING:
@@ -17,10 +18,7 @@ if TYPE_CHECKING:
 meshes_app = typer.Typer(
     name="meshes",
     help="The meshes that scenes name: where they come from, on what terms, and how to get the real ones.",
-    # as experiments.cli has it, for the same reasons
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    no_args_is_help=True,
+    **TYPER_STYLE,
 )
 
 

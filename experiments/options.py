@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from scenes.errors import InputError
 from scenes.file_names import is_text
+
+# of every typer.Typer of ours
+TYPER_STYLE: dict[str, Any] = {
+    # plain help: rich's own costs three times the start-up
+    "rich_markup_mode": None,
+    "add_completion": False,
+    # a defect of ours shows as a plain traceback, which can be pasted into an issue
+    "pretty_exceptions_enable": False,
+    "no_args_is_help": True,
+    "context_settings": {"help_option_names": ["-h", "--help"]},
+}
 
 SCENE_HELP = "A shipped scene's name or the path of a Mitsuba XML file."
 

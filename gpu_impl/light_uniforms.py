@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from gpu_impl.geometry import bounding_box
 from gpu_impl.textures import PictureTextures
 from scenes.model import Light, Scene
 
@@ -15,14 +14,18 @@ from scenes.model import Light, Scene
 SPOT_UNIT = 8
 
 
-def placed(scene: Scene, light: Light) -> Light:
-    """Give a directional light a position from which it sees every surface before it; others have theirs."""
+def placed(light: Light, bounds: np.ndarray) -> Light:
+    """Give a directional light a position from which it sees every surface before it; others have theirs.
+
+    Parameters
+    ----------
+    bounds : (8, 3)    corners of the box around the surfaces [scene unit]
+    """
     if light.kind != "directional":
         return light
-    corners = bounding_box(scene)
-    along = corners @ light.direction
+    along = bounds @ light.direction
     nearest, depth = along.min(), max(float(np.ptp(along)), 1e-6)
-    centre = corners.mean(axis=0)
+    centre = bounds.mean(axis=0)
     return replace(light, position=centre + light.direction * (nearest - centre @ light.direction - depth))
 
 

@@ -50,7 +50,7 @@ class Renderer:
             raise InputError(f"The image is larger than this OpenGL allows ({limit} pixels on a side).")
         self._geometry = Geometry(self.device, scene)
         self._pictures = PictureTextures(self.device)
-        self._lights = tuple(placed(scene, light) for light in scene.lights)
+        self._lights = tuple(placed(light, self._geometry.bounds) for light in scene.lights)
         self._views: dict[int, View] = {}
 
     def __enter__(self) -> Renderer:

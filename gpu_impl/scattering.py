@@ -62,5 +62,7 @@ def phase_uniforms(device: Device, program: Any, phase: Phase) -> Iterator[None]
         return
     buffer = device.context.buffer(np.asarray(table, np.float32))
     buffer.bind_to_storage_buffer(PHASE_TABLE)
-    yield
-    buffer.release()
+    try:
+        yield
+    finally:
+        buffer.release()

@@ -5,6 +5,7 @@ Importing this module loads Mitsuba and registers the plugin `single_scattering`
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import Any
 
 from reference.distances import equiangular, even_or_attenuated, position_of, reach
@@ -172,12 +173,8 @@ def eye_path(scene: Any, ray: Any, medium: Any, active: Any = True) -> FogPath:
     path = bounded_path(scene, endless, medium is not None, active)
     beyond = path.t_end > ray.maxt
     clipped = bounded_path(scene, ray, medium is not None, active & beyond)
-    return FogPath(
-        **{
-            field: dr.select(beyond, getattr(clipped, field), getattr(path, field))
-            for field in ("blocked", "t_last", "t_end", "fog_begin", "fog_end", "fog_length", "ends_in_fog")
-        }
-    )
+    names = [field.name for field in fields(FogPath)]
+    return FogPath(**{name: dr.select(beyond, getattr(clipped, name), getattr(path, name)) for name in names})
 
 
 def from_light(ds: Any, margin: float, share: float = 1.0) -> Any:
