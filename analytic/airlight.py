@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.medium import Medium
 from analytic.models import MODELS, AirlightModel
 from analytic.phase import Phase
+from analytic.segments import Segments
 
 __all__ = ["MODELS", "AirlightModel", "airlight"]
 
@@ -66,7 +67,10 @@ def airlight(
         raise TypeError(f"medium must be an analytic.Medium, not {type(medium).__name__}")
     if not hasattr(phase, "evaluate"):
         raise TypeError(f"phase must be made by analytic.phase, not be a {type(phase).__name__}")
-    height, start, end = _segment(h, x_a, x_b)
+    chosen = MODELS[model]
+    if not chosen.takes(phase):
+        raise ValueError(f"phase must be {' or '.join(chosen.phases)} for the model {model}, not {phase.name}")
+    height, start, end = _positions(h, x_a, x_b)
     power = np.asarray(intensity, dtype=np.float64)
     if not np.all(np.isfinite(power)) or np.any(power < 0):
         raise ValueError("intensity must be finite and not negative")
@@ -76,20 +80,23 @@ def airlight(
     arrays = np.broadcast_arrays(height, start, end, medium.sigma_t)
     shape = arrays[0].shape
     height, start, end, sigma_t = (array.ravel() for array in arrays)
+    pieces = Segments.between(height, start, end, sigma_t)
 
     result = np.zeros(height.shape)
-    empty = start == end
-    lamp = ~empty & (height == 0) & (start <= 0) & (end >= 0)
-    plain = ~empty & ~lamp
+    lamp = (height == 0) & (start <= 0) & (end >= 0) & (end > start)
     result[lamp] = np.inf
-    result[plain] = MODELS[model].function(height[plain], start[plain], end[plain], sigma_t[plain], phase, **options)
+    # a ray through the light is no model's own matter: its limit is that of the integral
+    through = pieces.through_light & ~lamp & (end > start)
+    result[through] = MODELS["quadrature"].function(pieces[through].beside_light(), phase)
+    plain = (end > start) & ~through & ~lamp
+    result[plain] = chosen.function(pieces[plain], phase, **options)
 
     scale = power * medium.sigma_s
     with np.errstate(invalid="ignore"):  # no light and no scattering make no airlight, at the lamp neither
         return np.where(scale > 0, scale * result.reshape(shape), 0.0)
 
 
-def _segment(
+def _positions(
     h: ArrayLike, x_a: ArrayLike, x_b: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """The three lengths as float64 arrays of one shape, once they make sense."""

@@ -18,10 +18,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.geometry import h_times_v, negligible_h
+from analytic.models.model import AirlightModel
 from analytic.phase import Phase
+from analytic.segments import Segments
 
-__all__ = ["quadrature"]
+__all__ = ["MODEL", "quadrature"]
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
 PANEL_WIDTH = 1.5
@@ -31,22 +32,13 @@ LARGEST_RATIO = 1e18
 CHUNK = 1 << 18  # integrand values held at once: 2 MiB an array
 
 
-def quadrature(
-    h: NDArray[np.float64],
-    x_a: NDArray[np.float64],
-    x_b: NDArray[np.float64],
-    sigma_t: NDArray[np.float64],
-    phase: Phase,
-) -> NDArray[np.float64]:
+def quadrature(segments: Segments, phase: Phase) -> NDArray[np.floating]:
     """Airlight of unit intensity and unit scattering coefficient.
 
     Parameters
     ----------
-    h : ndarray, (n,)        distance of the light from the ray [scene unit]; 0 only beside the segment
-    x_a : ndarray, (n,)      the eye, from the light's projection on the ray [scene unit]
-    x_b : ndarray, (n,)      end of the segment, above x_a, may be inf [scene unit]
-    sigma_t : ndarray, (n,)  extinction coefficient [1 / scene unit]
-    phase : Phase            phase function
+    segments : Segments, (n,)  of float64
+    phase : Phase              phase function
 
     Returns
     -------
@@ -54,23 +46,17 @@ def quadrature(
 
     Source: Weng 2010, Eq. 18, repaired; the quadrature is this module's.
     """
-    h = np.maximum(h, negligible_h(x_a, x_b))
-    d_a = np.hypot(h, x_a)
-    v_a = h_times_v(h, x_a) / h
-    optical_h = sigma_t * h
-    start = v_a + phase.analytic_radius
-
+    v_a, optical_h = segments.v_a, segments.optical_h
     with np.errstate(divide="ignore", over="ignore"):
-        span = np.minimum(_difference_of_v(h, x_a, x_b), LARGEST_RATIO * start)
+        span = np.minimum(segments.difference_of_v, LARGEST_RATIO * (v_a + phase.analytic_radius))
         span = np.minimum(span, LARGEST_OPTICAL_DEPTH / optical_h)
     integrate = _between_kinks if phase.kinks else _smooth
-    integral = integrate(v_a, span, optical_h, phase)
-    return np.exp(-sigma_t * d_a) * integral / h
+    return np.exp(-segments.sigma_t * segments.d_a) * integrate(v_a, span, optical_h, phase) / segments.h
 
 
 def _between_kinks(
-    v_a: NDArray[np.float64], span: NDArray[np.float64], optical_h: NDArray[np.float64], phase: Phase
-) -> NDArray[np.float64]:
+    v_a: NDArray[np.floating], span: NDArray[np.floating], optical_h: NDArray[np.floating], phase: Phase
+) -> NDArray[np.floating]:
     """The integral over v, (n,), of a function that is smooth from one kink to the next.
 
     Where v_kink - v_a cancels, the cut misses the kink by some 1e-16 v: as the function is continuous there, that costs
@@ -94,8 +80,8 @@ def _between_kinks(
 
 
 def _smooth(
-    v_a: NDArray[np.float64], span: NDArray[np.float64], optical_h: NDArray[np.float64], phase: Phase
-) -> NDArray[np.float64]:
+    v_a: NDArray[np.floating], span: NDArray[np.floating], optical_h: NDArray[np.floating], phase: Phase
+) -> NDArray[np.floating]:
     """int_{v_a}^{v_a + span} e^{-H (v - v_a)} p 2 / (1 + v^2) dv, (n,), of a function without a kink inside."""
     start = v_a + phase.analytic_radius
     log_span = np.log1p(span / start)
@@ -116,34 +102,37 @@ def _smooth(
     return integral
 
 
-def _difference_of_v(h: NDArray[np.float64], x_a: NDArray[np.float64], x_b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """v_b - v_a to the last digits: the difference of u + sqrt(1 + u^2) divided out, never subtracted."""
-    finite = np.isfinite(x_b)
-    end = np.where(finite, x_b, x_a)
-    # v_b - v_a = (u_b - u_a) (v_a + v_b) / (sqrt(1 + u_a^2) + sqrt(1 + u_b^2)), in lengths instead of multiples of h
-    ratio = (h_times_v(h, x_a) + h_times_v(h, end)) / (np.hypot(h, x_a) + np.hypot(h, end))
-    return np.where(finite, (end - x_a) / h * ratio, np.inf)
-
-
 def _composite(
-    v_a: NDArray[np.float64],
-    start: NDArray[np.float64],
-    log_span: NDArray[np.float64],
-    optical_h: NDArray[np.float64],
+    v_a: NDArray[np.floating],
+    start: NDArray[np.floating],
+    log_span: NDArray[np.floating],
+    optical_h: NDArray[np.floating],
     phase: Phase,
     panels: int,
-) -> NDArray[np.float64]:
+) -> NDArray[np.floating]:
     """The integral over v of all points of a chunk, (n,), with the same number of panels."""
     fractions = (np.arange(panels)[:, None] + (1 + NODES) / 2).ravel() / panels
     weights = np.tile(WEIGHTS / (2 * panels), panels)
     tau = log_span[:, None] * fractions
     past = start[:, None] * np.expm1(tau)  # v - v_a
     v = v_a[:, None] + past
-    # v or 1/v, whichever is below 1: neither squares nor cosines overflow or cancel
+    # v or 1/v, whichever is below 1: no square overflows
     small = np.minimum(v, 1 / v)
-    cosine = np.copysign((1 - small) * (1 + small) / (1 + small * small), 1 - v)
+    inverse = 1 / (1 + small * small)
+    minor = small * small * inverse
+    behind = v > 1
+    cos2, sin2 = np.where(behind, minor, inverse), np.where(behind, inverse, minor)
     # 2 dv / (1 + v^2) / dtau = 2 (v + r) / (1 + v^2)
     radius = phase.analytic_radius
-    jacobian = np.where(v < 1, v + radius, small * (1 + radius * small)) * (2 / (1 + small * small))
-    values = np.exp(-optical_h[:, None] * past) * phase.evaluate(cosine) * jacobian
+    jacobian = 2 * inverse * np.where(behind, small * (1 + radius * small), v + radius)
+    values = np.exp(-optical_h[:, None] * past) * phase.of_half_angle(cos2, sin2) * jacobian
     return log_span * (values @ weights)
+
+
+MODEL = AirlightModel(
+    name="quadrature",
+    function=quadrature,
+    citation="Weng 2010, Eq. 18, repaired; composite Gauss-Legendre in ln(v + r)",
+    domain="every phase function, segments of any length, clear to opaque media: 1e-12 relative (measured: 7e-14)",
+    cost="20 nodes a panel, 1 to 33 panels; 2 exponentials a node",
+)

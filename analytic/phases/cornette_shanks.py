@@ -6,15 +6,16 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from analytic.phases.base import Phase
 from analytic.phases.henyey_greenstein import HenyeyGreenstein
 
 __all__ = ["CornetteShanks"]
 
 
 @dataclass(frozen=True)
-class CornetteShanks:
+class CornetteShanks(Phase):
     """3 (1 - g^2) (1 + cos^2 theta) / (8 pi (2 + g^2) (1 + g^2 - 2 g cos theta)^(3/2)).
 
     It is `rayleigh` at g = 0.
@@ -33,16 +34,16 @@ class CornetteShanks:
 
     g: float
     name: ClassVar[str] = "cornette_shanks"
-    kinks: ClassVar[tuple[float, ...]] = ()
 
     def __post_init__(self) -> None:
-        HenyeyGreenstein(self.g)
+        object.__setattr__(self, "g", HenyeyGreenstein(self.g).g)
 
-    def evaluate(self, cos_theta: ArrayLike) -> NDArray[np.float64]:
-        """Value [1/sr] at cos_theta, (...)."""
-        cosine = np.asarray(cos_theta, dtype=np.float64)
+    def of_half_angle(self, cos2: NDArray[np.floating], sin2: NDArray[np.floating]) -> NDArray[np.floating]:
+        """Value [1/sr] from cos^2(theta / 2) and sin^2(theta / 2), (...)."""
         # 1 + cos^2 has the average 1 + (1 + 2 g^2) / 3 under `hg`
-        return 3 / (4 + 2 * self.g**2) * (1 + np.square(cosine)) * HenyeyGreenstein(self.g).evaluate(cosine)
+        return (
+            3 / (4 + 2 * self.g**2) * (1 + np.square(cos2 - sin2)) * HenyeyGreenstein(self.g).of_half_angle(cos2, sin2)
+        )
 
     @property
     def mean_cosine(self) -> float:

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+
+from analytic.phases.base import Phase
 
 __all__ = ["HenyeyGreenstein"]
 
 
 @dataclass(frozen=True)
-class HenyeyGreenstein:
+class HenyeyGreenstein(Phase):
     """(1 - g^2) / (4 pi (1 + g^2 - 2 g cos theta)^(3/2)).
 
     Parameters
@@ -30,19 +31,18 @@ class HenyeyGreenstein:
 
     g: float
     name: ClassVar[str] = "hg"
-    kinks: ClassVar[tuple[float, ...]] = ()
 
     def __post_init__(self) -> None:
         if not abs(self.g) < 1:
             raise ValueError(f"g must lie strictly between -1 and 1: {self.g}")
+        object.__setattr__(self, "g", float(self.g))  # a NumPy scalar would widen float32 arrays
 
-    def evaluate(self, cos_theta: ArrayLike) -> NDArray[np.float64]:
-        """Value [1/sr] at cos_theta, (...)."""
-        # (1 - |g|)^2 + 2 |g| (1 -+ cos theta) does not cancel at the peak, where 1 + g^2 - 2 g cos theta does
-        cosine = math.copysign(1.0, self.g) * np.asarray(cos_theta, dtype=np.float64)
+    def of_half_angle(self, cos2: NDArray[np.floating], sin2: NDArray[np.floating]) -> NDArray[np.floating]:
+        """Value [1/sr] from cos^2(theta / 2) and sin^2(theta / 2), (...)."""
+        # 1 + g^2 - 2 g cos theta, without its cancellation at the peak
         g = abs(self.g)
-        base = (1 - g) ** 2 + 2 * g * (1 - cosine)
-        return np.asarray((1 - g) * (1 + g) / (4 * np.pi * base * np.sqrt(base)))
+        base = (1 - g) ** 2 + 4 * g * (sin2 if self.g > 0 else cos2)
+        return (1 - g) * (1 + g) / (4 * np.pi) / (base * np.sqrt(base))
 
     @property
     def mean_cosine(self) -> float:

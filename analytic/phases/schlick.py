@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+
+from analytic.phases.base import Phase
 
 __all__ = ["Schlick"]
 
@@ -17,7 +19,7 @@ TERMS = 26
 
 
 @dataclass(frozen=True)
-class Schlick:
+class Schlick(Phase):
     """(1 - k^2) / (4 pi (1 - k cos theta)^2).
 
     Parameters
@@ -34,19 +36,18 @@ class Schlick:
 
     k: float
     name: ClassVar[str] = "schlick"
-    kinks: ClassVar[tuple[float, ...]] = ()
 
     def __post_init__(self) -> None:
         if not abs(self.k) < 1:
             raise ValueError(f"k must lie strictly between -1 and 1: {self.k}")
+        object.__setattr__(self, "k", float(self.k))  # a NumPy scalar would widen float32 arrays
 
-    def evaluate(self, cos_theta: ArrayLike) -> NDArray[np.float64]:
-        """Value [1/sr] at cos_theta, (...)."""
-        # (1 - |k|) + |k| (1 -+ cos theta) does not cancel at the peak, where 1 - k cos theta does
-        cosine = math.copysign(1.0, self.k) * np.asarray(cos_theta, dtype=np.float64)
+    def of_half_angle(self, cos2: NDArray[np.floating], sin2: NDArray[np.floating]) -> NDArray[np.floating]:
+        """Value [1/sr] from cos^2(theta / 2) and sin^2(theta / 2), (...)."""
+        # 1 - k cos theta, without its cancellation at the peak
         k = abs(self.k)
-        base = (1 - k) + k * (1 - cosine)
-        return np.asarray((1 - k) * (1 + k) / (4 * np.pi * base * base))
+        base = (1 - k) + 2 * k * (sin2 if self.k > 0 else cos2)
+        return (1 - k) * (1 + k) / (4 * np.pi) / (base * base)
 
     @property
     def mean_cosine(self) -> float:

@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+
+from analytic.phases.base import Phase
 
 __all__ = ["Tabulated"]
 
 
 @dataclass(frozen=True)
-class Tabulated:
+class Tabulated(Phase):
     """Piecewise linear in cos theta.
 
     The order is that of Mitsuba's `tabphase`. Measured in 3.9.1 (`llvm_ad_rgb` and `scalar_rgb`): handed the values
@@ -57,9 +59,10 @@ class Tabulated:
         """Cosines of the values, (n,)."""
         return np.linspace(-1.0, 1.0, len(self.values))
 
-    def evaluate(self, cos_theta: ArrayLike) -> NDArray[np.float64]:
-        """Value [1/sr] at cos_theta, (...)."""
-        return np.asarray(np.interp(np.asarray(cos_theta, dtype=np.float64), self._nodes, self.values))
+    def of_half_angle(self, cos2: NDArray[np.floating], sin2: NDArray[np.floating]) -> NDArray[np.floating]:
+        """Value [1/sr] from cos^2(theta / 2) and sin^2(theta / 2), (...)."""
+        value = np.interp(cos2 - sin2, self._nodes, self.values)
+        return np.asarray(value, dtype=np.asarray(cos2).dtype)
 
     @property
     def mean_cosine(self) -> float:
@@ -69,11 +72,6 @@ class Tabulated:
         middle = (cosine[1:] + cosine[:-1]) * (value[1:] + value[:-1])
         moments = cosine[1:] * value[1:] + cosine[:-1] * value[:-1] + middle
         return float(2 * np.pi * moments.sum() / (3 * (value.size - 1)))
-
-    @property
-    def analytic_radius(self) -> float:
-        """1: between two kinks the function is linear in cos theta, which has its poles at v = +-i."""
-        return 1.0
 
     @property
     def kinks(self) -> tuple[float, ...]:

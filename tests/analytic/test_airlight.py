@@ -20,6 +20,7 @@ from exact_airlight import (
 )
 
 from analytic import MODELS, Medium, airlight, phase, transmittance
+from analytic.segments import Segments
 
 ISOTROPIC = phase("isotropic")
 FOG = Medium(0.15, 0.2)
@@ -135,8 +136,9 @@ def test_weng2010_where_it_is_well_conditioned():
     h = 10 ** random.uniform(-2, 1, 20_000)
     x_a, x_b = -h * 10 ** random.uniform(-1, 2, h.size), h * 10 ** random.uniform(-1, 2, h.size)
     sigma_t = 10 ** random.uniform(-4, 0.5, h.size) / h
-    exact = MODELS["quadrature"].function(h, x_a, x_b, sigma_t, ISOTROPIC)
-    closed = MODELS["weng2010"].function(h, x_a, x_b, sigma_t, ISOTROPIC)
+    segments = Segments.between(h, x_a, x_b, sigma_t)
+    exact = MODELS["quadrature"].function(segments, ISOTROPIC)
+    closed = MODELS["weng2010"].function(segments, ISOTROPIC)
     bright = exact > 1e-300
     assert np.max(np.abs(closed[bright] / exact[bright] - 1)) < 2e-14
 
@@ -156,7 +158,7 @@ def test_clear_medium_is_the_angle_subtended():
     h, x_a, x_b = np.array([0.5, 1e-3, 30.0]), np.array([-2.0, 0.3, -9.0]), np.array([np.inf, 0.7, 1e3])
     exact = (np.arctan(x_b / h) - np.arctan(x_a / h)) / (4 * np.pi * h)
     for model in ("quadrature", "weng2010"):
-        value = MODELS[model].function(h, x_a, x_b, np.zeros(3), ISOTROPIC)
+        value = MODELS[model].function(Segments.between(h, x_a, x_b, np.zeros(3)), ISOTROPIC)
         np.testing.assert_allclose(value, exact, rtol=1e-12)  # measured: 1e-13, from the subtraction of the angles here
     assert airlight(0.5, -2.0, 3.0, Medium(0.0, 0.0), ISOTROPIC) == 0
 
