@@ -46,49 +46,45 @@ def quadrature(segments: Segments, phase: Phase) -> NDArray[np.floating]:
 
     Source: Weng 2010, Eq. 18, repaired; the quadrature is this module's.
     """
-    v_a, optical_h = segments.v_a, segments.optical_h
-    with np.errstate(divide="ignore", over="ignore"):
-        span = np.minimum(segments.difference_of_v, LARGEST_RATIO * (v_a + phase.analytic_radius))
-        span = np.minimum(span, LARGEST_OPTICAL_DEPTH / optical_h)
     integrate = _between_kinks if phase.kinks else _smooth
-    return np.exp(-segments.sigma_t * segments.d_a) * integrate(v_a, span, optical_h, phase) / segments.h
+    return np.exp(-segments.sigma_t * segments.d_a) * integrate(segments, phase) / segments.h
 
 
-def _between_kinks(
-    v_a: NDArray[np.floating], span: NDArray[np.floating], optical_h: NDArray[np.floating], phase: Phase
-) -> NDArray[np.floating]:
-    """The integral over v, (n,), of a function that is smooth from one kink to the next.
-
-    Where v_kink - v_a cancels, the cut misses the kink by some 1e-16 v: as the function is continuous there, that costs
-    1e-16 of its slope and no more.
-    """
+def _between_kinks(segments: Segments, phase: Phase) -> NDArray[np.floating]:
+    """The integral over v, (n,), of a function that is smooth from one kink to the next."""
     cosines = np.asarray(phase.kinks)[::-1]
-    kinks = np.sqrt((1 - cosines) / (1 + cosines))
-    first, last = np.searchsorted(kinks, v_a, "right"), np.searchsorted(kinks, v_a + span, "left")
+    kinks = -cosines / np.sqrt((1 - cosines) * (1 + cosines))
+    u_a, u_b = segments.x_a / segments.h, segments.x_b / segments.h
+    first, last = np.searchsorted(kinks, u_a, "right"), np.searchsorted(kinks, u_b, "left")
     cuts = np.maximum(last - first, 0)
     # one entry a piece: the segment it belongs to, and which of the segment's pieces it is
-    owner = np.repeat(np.arange(v_a.size), cuts + 1)
+    owner = np.repeat(np.arange(u_a.size), cuts + 1)
     number = np.arange(owner.size) - np.repeat(np.cumsum(cuts + 1) - (cuts + 1), cuts + 1)
     before = kinks[np.clip(first[owner] + number - 1, 0, kinks.size - 1)]
     behind = kinks[np.clip(first[owner] + number, 0, kinks.size - 1)]
-    offset = np.where(number == 0, 0.0, before - v_a[owner])
-    end = np.where(number == cuts[owner], span[owner], behind - v_a[owner])
-    piece = _smooth(v_a[owner] + offset, end - offset, optical_h[owner], phase)
-    integral = np.zeros_like(v_a)
-    np.add.at(integral, owner, np.exp(-optical_h[owner] * offset) * piece)
+    start = np.where(number == 0, u_a[owner], before)
+    end = np.where(number == cuts[owner], u_b[owner], behind)
+    # lengths in units of h; a segment that is not cut keeps the length that it was given
+    length = np.where(cuts[owner] == 0, segments.length[owner] / segments.h[owner], end - start)
+    unit, optical_h = np.ones_like(start), segments.optical_h[owner]
+    piece = _smooth(Segments(unit, start, end, length, optical_h), phase)
+    before_it = np.where(number == 0, 0.0, Segments.between(unit, u_a[owner], start, optical_h).difference_of_v)
+    integral = np.zeros_like(u_a)
+    np.add.at(integral, owner, np.exp(-optical_h * before_it) * piece)
     return integral
 
 
-def _smooth(
-    v_a: NDArray[np.floating], span: NDArray[np.floating], optical_h: NDArray[np.floating], phase: Phase
-) -> NDArray[np.floating]:
-    """int_{v_a}^{v_a + span} e^{-H (v - v_a)} p 2 / (1 + v^2) dv, (n,), of a function without a kink inside."""
-    start = v_a + phase.analytic_radius
+def _smooth(segments: Segments, phase: Phase) -> NDArray[np.floating]:
+    """int_{v_a}^{v_b} e^{-H (v - v_a)} p 2 / (1 + v^2) dv, (n,), of a function without a kink inside."""
+    start = segments.v_a + phase.analytic_radius
+    with np.errstate(divide="ignore", over="ignore"):
+        span = np.minimum(segments.difference_of_v, LARGEST_RATIO * start)
+        span = np.minimum(span, LARGEST_OPTICAL_DEPTH / segments.optical_h)
     log_span = np.log1p(span / start)
-    panels = np.ceil(log_span / PANEL_WIDTH + optical_h * span / PANEL_OPTICAL_DEPTH)
+    panels = np.ceil(log_span / PANEL_WIDTH + segments.optical_h * span / PANEL_OPTICAL_DEPTH)
     panels = np.maximum(panels, 1).astype(int)
 
-    integral = np.empty_like(v_a)
+    integral = np.empty_like(start)
     order = np.argsort(panels, kind="stable")
     first = 0
     while first < order.size:
@@ -97,36 +93,34 @@ def _smooth(
         count = int(panels[order[min(last, order.size) - 1]])
         last = min(last, first + max(1, CHUNK // (NODES.size * count)))
         part = order[first:last]
-        integral[part] = _composite(v_a[part], start[part], log_span[part], optical_h[part], phase, count)
+        integral[part] = _composite(segments[part], log_span[part], phase, count)
         first = last
     return integral
 
 
-def _composite(
-    v_a: NDArray[np.floating],
-    start: NDArray[np.floating],
-    log_span: NDArray[np.floating],
-    optical_h: NDArray[np.floating],
-    phase: Phase,
-    panels: int,
-) -> NDArray[np.floating]:
-    """The integral over v of all points of a chunk, (n,), with the same number of panels."""
+def _composite(segments: Segments, log_span: NDArray[np.floating], phase: Phase, panels: int) -> NDArray[np.floating]:
+    """The integral over v of all segments of a chunk, (n,), with the same number of panels."""
     fractions = (np.arange(panels)[:, None] + (1 + NODES) / 2).ravel() / panels
     weights = np.tile(WEIGHTS / (2 * panels), panels)
     tau = log_span[:, None] * fractions
-    past = start[:, None] * np.expm1(tau)  # v - v_a
-    v = v_a[:, None] + past
+    radius, v_a = phase.analytic_radius, segments.v_a[:, None]
+    past = (v_a + radius) * np.expm1(tau)  # v - v_a
+    v = v_a + past
     # v or 1/v, whichever is below 1: no square overflows
     small = np.minimum(v, 1 / v)
     inverse = 1 / (1 + small * small)
     minor = small * small * inverse
     behind = v > 1
-    cos2, sin2 = np.where(behind, minor, inverse), np.where(behind, inverse, minor)
     # 2 dv / (1 + v^2) / dtau = 2 (v + r) / (1 + v^2)
-    radius = phase.analytic_radius
     jacobian = 2 * inverse * np.where(behind, small * (1 + radius * small), v + radius)
-    values = np.exp(-optical_h[:, None] * past) * phase.of_half_angle(cos2, sin2) * jacobian
-    return log_span * (values @ weights)
+    if phase.kinks:
+        # A table may be 0 at a right angle: close to it u = (v - 1/v) / 2 must not be the difference of two large ones.
+        u_a = (segments.x_a / segments.h)[:, None]
+        u = np.where(np.abs(u_a) < 1, u_a + past * (1 + 1 / (v * v_a)) / 2, (v - 1 / v) / 2)
+        value = phase.evaluate(-u / np.hypot(1, u))
+    else:
+        value = phase.of_half_angle(np.where(behind, minor, inverse), np.where(behind, inverse, minor))
+    return log_span * ((np.exp(-segments.optical_h[:, None] * past) * value * jacobian) @ weights)
 
 
 MODEL = AirlightModel(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from analytic.phases.base import Phase
 
@@ -35,7 +35,8 @@ class Tabulated(Phase):
 
     Notes
     -----
-    Where the table falls to 0, a value close to it is as accurate as cos theta itself allows: 1e-16 of the largest.
+    Where the table falls to 0, a value close to it is as accurate as cos theta itself allows: 1e-16 of the largest,
+    and to the last digit at a right angle, where cos theta is small.
     """
 
     values: Sequence[float]
@@ -57,12 +58,21 @@ class Tabulated(Phase):
     @property
     def _nodes(self) -> NDArray[np.float64]:
         """Cosines of the values, (n,)."""
-        return np.linspace(-1.0, 1.0, len(self.values))
+        last = len(self.values) - 1
+        return (2 * np.arange(last + 1) - last) / last
+
+    def evaluate(self, cos_theta: ArrayLike) -> NDArray[np.float64]:
+        """Value [1/sr] at cos_theta, (...)."""
+        # a mean of both neighbours keeps its digits where one of them is 0
+        cosine = np.clip(np.asarray(cos_theta, dtype=np.float64), -1, 1)
+        nodes, values = self._nodes, np.asarray(self.values)
+        i = np.clip(np.searchsorted(nodes, cosine, "right") - 1, 0, nodes.size - 2)
+        from_low, to_high = cosine - nodes[i], nodes[i + 1] - cosine
+        return np.asarray((values[i] * to_high + values[i + 1] * from_low) / (from_low + to_high))
 
     def of_half_angle(self, cos2: NDArray[np.floating], sin2: NDArray[np.floating]) -> NDArray[np.floating]:
         """Value [1/sr] from cos^2(theta / 2) and sin^2(theta / 2), (...)."""
-        value = np.interp(cos2 - sin2, self._nodes, self.values)
-        return np.asarray(value, dtype=np.asarray(cos2).dtype)
+        return self.evaluate(cos2 - sin2).astype(np.asarray(cos2).dtype)
 
     @property
     def mean_cosine(self) -> float:

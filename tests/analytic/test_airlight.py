@@ -272,6 +272,10 @@ def test_models_are_described():
 
 
 def test_importing_is_light():
-    code = "import sys, analytic; print([m for m in ('scipy', 'mitsuba', 'moderngl', 'mpmath') if m in sys.modules])"
+    # numpy and scipy alone, with what they bring
+    code = (
+        "import sys, numpy, scipy.special, scipy.interpolate; before = set(sys.modules); import analytic; "
+        "print({name.split('.')[0] for name in set(sys.modules) - before} - set(sys.stdlib_module_names))"
+    )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert result.stdout.strip() == "[]"
+    assert result.stdout.strip() in ("{'analytic'}", "{'analytic', 'scipy'}", "{'scipy', 'analytic'}")
