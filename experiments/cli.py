@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from experiments.mathematics_cli import atlas, audit, spectra
 from experiments.meshes_cli import meshes_app
 from experiments.options import (
     SCENE_HELP,
@@ -255,6 +256,10 @@ def run(
         rows, folder = run_suite(name, loaded, out, watcher)
     console.print(results_table(rows))
     say(f"Results: {folder.resolve()}")
+
+
+for command in (audit, atlas, spectra):
+    app.command()(command)
 
 
 def _check_against_volpath(scene: Scene) -> None:
