@@ -21,7 +21,7 @@ def airlight(
     phase: Phase,
     intensity: ArrayLike = 1.0,
     model: str = "quadrature",
-    **options: int,
+    **options: float | None,
 ) -> NDArray[np.float64]:
     """Radiance that reaches the eye from the light scattered between x_a and x_b.
 
@@ -37,7 +37,8 @@ def airlight(
     phase : Phase                  phase function, from `analytic.phase`
     intensity : array_like, (...)  of the light [W / sr]; broadcasts with the result
     model : str                    a name in `MODELS`
-    **options : int                what the model takes besides: `steps` for "riemann"
+    **options                      what the model's function takes besides, such as `steps` for "riemann", `terms` for
+        "weng2010:minimax", `nodes` for "quadrature_float32"
 
     Returns
     -------
@@ -49,7 +50,7 @@ def airlight(
     ------
     ValueError
         If h, x_a, x_b or intensity is NaN, h or intensity negative or infinite, x_a infinite, x_b below x_a, the model
-        unknown, or the phase function one that the model does not take.
+        unknown, the phase function one that the model does not take, or an option out of its range.
     TypeError
         If medium or phase is not what this package makes, or an option is not the model's.
 

@@ -117,7 +117,7 @@ def _composite(segments: Segments, log_span: NDArray[np.floating], phase: Phase,
         # A table may be 0 at a right angle: close to it u = (v - 1/v) / 2 must not be the difference of two large ones.
         u_a = (segments.x_a / segments.h)[:, None]
         u = np.where(np.abs(u_a) < 1, u_a + past * (1 + 1 / (v * v_a)) / 2, (v - 1 / v) / 2)
-        value = phase.evaluate(-u / np.hypot(1, u))
+        value: NDArray[np.floating] = phase.evaluate(-u / np.hypot(1, u))
     else:
         value = phase.of_half_angle(np.where(behind, minor, inverse), np.where(behind, inverse, minor))
     return log_span * ((np.exp(-segments.optical_h[:, None] * past) * value * jacobian) @ weights)

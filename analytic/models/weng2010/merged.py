@@ -57,7 +57,9 @@ MODEL = AirlightModel(
     name="weng2010",
     function=weng2010,
     citation="Weng 2010, Eq. 21, repaired and merged; Pegoraro and Parker 2009",
-    domain="isotropic; loses the digits that both ends share (short segments, segments before the light)",
+    domain="isotropic; within 7 eps (1 + sigma_t d_a) of the moduli of its two terms, so it loses the digits that both "
+    "ends share (short segments, segments before the light). Visible segments off by more than 1 %: none in float64, "
+    "0.5 % in float32 (8 % of those before the light, none around or behind it)",
     cost="2 complex exponential integrals, 2 exponentials, 2 square roots",
     phases=("isotropic",),
 )
