@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from analytic.medium import Medium
 from analytic.models import MODELS, AirlightModel
@@ -21,6 +21,7 @@ def airlight(
     phase: Phase,
     intensity: ArrayLike = 1.0,
     model: str = "quadrature",
+    dtype: DTypeLike = np.float64,
     **options: float | None,
 ) -> NDArray[np.float64]:
     """Radiance that reaches the eye from the light scattered between x_a and x_b.
@@ -37,6 +38,8 @@ def airlight(
     phase : Phase                  phase function, from `analytic.phase`
     intensity : array_like, (...)  of the light [W / sr]; broadcasts with the result
     model : str                    a name in `MODELS`
+    dtype : dtype_like             in which the model computes: float64, or float32 to see what a shader would get from
+        h, x_a, sigma_t and the length as it holds them
     **options                      what the model's function takes besides, such as `steps` for "riemann", `terms` for
         "weng2010:minimax", `nodes` for "quadrature_float32"
 
@@ -68,7 +71,9 @@ def airlight(
         raise TypeError(f"medium must be an analytic.Medium, not {type(medium).__name__}")
     if not hasattr(phase, "evaluate"):
         raise TypeError(f"phase must be made by analytic.phase, not be a {type(phase).__name__}")
-    chosen = MODELS[model]
+    chosen, precision = MODELS[model], np.dtype(dtype)
+    if precision not in (np.float32, np.float64):
+        raise ValueError(f"dtype must be float32 or float64: {precision}")
     if not chosen.takes(phase):
         raise ValueError(f"phase must be {' or '.join(chosen.phases)} for the model {model}, not {phase.name}")
     height, start, end = _positions(h, x_a, x_b)
@@ -90,7 +95,8 @@ def airlight(
     through = pieces.through_light & ~lamp & (end > start)
     result[through] = MODELS["quadrature"].function(pieces[through].beside_light(), phase)
     plain = (end > start) & ~through & ~lamp
-    result[plain] = chosen.function(pieces[plain], phase, **options)
+    given = pieces[plain] if precision == np.float64 else pieces[plain].astype(precision)
+    result[plain] = chosen.function(given, phase, **options)
 
     scale = power * medium.sigma_s
     with np.errstate(invalid="ignore"):  # no light and no scattering make no airlight, at the lamp neither

@@ -7,11 +7,30 @@ folder that lists them as `MODELS`.
 
 from __future__ import annotations
 
-from analytic.models import one_ei, pegoraro2009, quadrature, riemann, weng2010
+from analytic.models import (
+    equiangular,
+    one_ei,
+    pegoraro2009,
+    quadrature,
+    quadrature_float32,
+    riemann,
+    sun2005,
+    weng2010,
+)
 from analytic.models.model import AirlightModel
 
 __all__ = ["MODELS", "AirlightModel"]
 
 MODELS: dict[str, AirlightModel] = {
-    model.name: model for model in (quadrature.MODEL, riemann.MODEL, one_ei.MODEL, pegoraro2009.MODEL, *weng2010.MODELS)
+    model.name: model
+    for model in (
+        quadrature.MODEL,
+        riemann.MODEL,
+        one_ei.MODEL,
+        pegoraro2009.MODEL,
+        *weng2010.MODELS,
+        quadrature_float32.MODEL,
+        equiangular.MODEL,
+        *sun2005.MODELS,
+    )
 }

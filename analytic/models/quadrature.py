@@ -127,6 +127,7 @@ MODEL = AirlightModel(
     name="quadrature",
     function=quadrature,
     citation="Weng 2010, Eq. 18, repaired; composite Gauss-Legendre in ln(v + r)",
-    domain="every phase function, segments of any length, clear to opaque media: 1e-12 relative (measured: 7e-14)",
+    domain="every phase function, segments of any length, clear to opaque media: 1e-12 relative (measured on 4,000 "
+    "drawn segments: 1.1e-13, most of it the exponential of an optical depth of 650)",
     cost="20 nodes a panel, 1 to 33 panels; 2 exponentials a node",
 )
