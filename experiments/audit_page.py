@@ -1,0 +1,109 @@
+"""results/audit: the audit as JSON and as a page."""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Sequence
+from dataclasses import asdict
+from datetime import UTC, datetime
+from pathlib import Path
+
+from analytic.thesis.audit import LARGEST_RIGHT, Entry
+from experiments.provenance import commit, package_version
+from scenes.errors import InputError
+
+__all__ = ["prepare_folder", "write_page"]
+
+PAGE = """# The equations of Weng 2010, audited
+
+    airlight audit --out {folder}
+
+{made}
+
+Each equation of the thesis is in code twice, as printed and repaired (`analytic/thesis/`, one file per section), and is
+compared with a truth that does not use it: particles and thin slabs for chapter 3, a lamp of finite size for Eqs. 13 to
+15, and for the airlight an oracle that proves a bound of its own error (`analytic/oracle/`). A residual is the largest
+relative error over the cases, 1 where everything is lost; above {limit:g} an equation is called wrong. Where a print
+can be read in several ways, the best reading counts and the finding tells the others. How large the residual of a wrong
+equation is depends on the cases (h from 0.03 to 10, extinction from 0.01 to 4, the light's projection before, inside
+and behind the segment); that it is wrong does not. [derivations.md](derivations.md) derives each repair,
+[audit.json](audit.json) holds the same numbers in full. A residual beyond float64 is given as the largest float.
+
+{right} are right as printed, {wrong} are wrong.
+
+| equation | verdict | as printed | repaired |
+|---|---|---|---|
+{rows}
+
+## What was compared, and what was found
+
+{findings}
+"""
+
+
+def prepare_folder(folder: Path) -> None:
+    """Make the folder, or say why it cannot be written.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in ("audit.json", "README.md"):
+            (folder / name).touch()
+    except OSError as error:
+        raise InputError(f"--out {folder} cannot be written: {error.strerror}; choose another folder.") from None
+
+
+def write_page(folder: Path, entries: Sequence[Entry]) -> None:
+    """Write audit.json and README.md, over those that are there.
+
+    Parameters
+    ----------
+    folder : Path  as `prepare_folder` left it
+    entries : sequence of Entry
+
+    Raises
+    ------
+    InputError
+        If the files cannot be written.
+    """
+    right = sum(entry.verdict == "right" for entry in entries)
+    text = PAGE.format(
+        folder=folder,
+        made=_made(),
+        limit=LARGEST_RIGHT,
+        right=right,
+        wrong=len(entries) - right,
+        rows="\n".join(map(_row, entries)),
+        findings="\n".join(f"- **{entry.equation}**: {_plain(entry.finding)}" for entry in entries),
+    )
+    try:
+        (folder / "audit.json").write_text(json.dumps([asdict(entry) for entry in entries], indent=2) + "\n")
+        (folder / "README.md").write_text(text)
+    except OSError as error:
+        raise InputError(f"--out {folder} cannot be written: {error.strerror}; choose another folder.") from None
+
+
+def _made() -> str:
+    versions = ", ".join(f"{name} {package_version(name)}" for name in ("airlight", "mpmath"))
+    date = datetime.now(UTC).date().isoformat()
+    return f"Made by that command on {date}: {versions}, commit {commit()}, Python {platform.python_version()}."
+
+
+def _row(entry: Entry) -> str:
+    repaired = "" if entry.verdict == "right" else _residual(entry.residual_repaired)
+    return f"| {entry.equation} | {_plain(entry.verdict)} | {_residual(entry.residual_printed)} | {repaired} |"
+
+
+def _residual(value: float | None) -> str:
+    return "" if value is None else f"{value:.1e}" if value else "0"
+
+
+def _plain(text: str) -> str:
+    """Markdown that shows the text's own signs."""
+    for sign in "\\_*^|<>":
+        text = text.replace(sign, f"\\{sign}")
+    return text
