@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from experiments.mathematics_cli import atlas, audit, spectra
+from experiments.mathematics_cli import atlas, audit, quadrature, spectra
 from experiments.meshes_cli import meshes_app
 from experiments.options import (
     SCENE_HELP,
@@ -258,7 +258,7 @@ def run(
     say(f"Results: {folder.resolve()}")
 
 
-for command in (audit, atlas, spectra):
+for command in (audit, atlas, quadrature, spectra):
     app.command()(command)
 
 

@@ -1,4 +1,4 @@
-"""`airlight audit`, `airlight atlas`, `airlight spectra`: the mathematics alone, without a renderer."""
+"""`airlight audit`, `atlas`, `quadrature` and `spectra`: the mathematics alone, without a renderer."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def audit(
 
     Exits with 1 where a repair fails.  Example: airlight audit
     """
-    from experiments.audit import run_audit
+    from experiments.audit.report import run_audit
 
     if not run_audit(json, out):
         raise typer.Exit(1)
@@ -30,11 +30,25 @@ def atlas(
     Example: airlight atlas --out results/atlas
     """
     from experiments.atlas.atlas import write_atlas
+    from experiments.atlas.exponential_integral_map import write_map
     from experiments.console import notices, say
 
     with notices.status("atlas") as status:
+        write_map(out)
         write_atlas(out, status.update)
     say(f"Atlas: {(out / 'README.md').resolve()}")
+
+
+def quadrature(out: Annotated[Path, typer.Option(help="Folder for the page.")]) -> None:
+    """Measure how many exponentials the airlight needs: tuned nodes beside Gauss-Legendre.
+
+    Example: airlight quadrature --out results/quadrature
+    """
+    from experiments.console import say
+    from experiments.quadrature.study import write_study
+
+    write_study(out)
+    say(f"Quadrature: {(out / 'README.md').resolve()}")
 
 
 def spectra(
@@ -45,7 +59,7 @@ def spectra(
     Example: airlight spectra --out results/spectra
     """
     from experiments.console import say
-    from experiments.spectra import write_spectra
+    from experiments.spectra.page import write_spectra
 
     write_spectra(out)
     say(f"Spectra: {(out / 'README.md').resolve()}")

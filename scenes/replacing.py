@@ -14,11 +14,13 @@ CACHE_CURE = "make room there, make it writable, or set XDG_CACHE_HOME to anothe
 
 
 def make_folder(folder: Path, cure: str) -> None:
-    """Make a folder and those above it, or raise InputError with the cure."""
+    """Make a folder and those above it; where that fails, or it may not be written to, InputError has the cure."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder} cannot be made ({error.strerror}): {cure}.") from None
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"{folder} cannot be written to: {cure}.")
 
 
 @contextmanager

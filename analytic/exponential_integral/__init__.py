@@ -21,7 +21,7 @@ elsewhere                              continued fraction with its tail; far out
 
 Worst relative error of the complex value / of the imaginary part alone in the right half plane R, of the complex value
 in the left one L. Half of the points lie close to an axis, down to 1e-8 radian. float64 against 30 digits, about 1,500
-points an entry; float32 against float64, about 100,000. By `experiments.exponential_integral_map.write_map`, with
+points an entry; float32 against float64, about 100,000. By `experiments.atlas.exponential_integral_map.write_map`, with
 scipy 1.17.1, e^z times its exp1:
 
 ============  =================  ========  =================  ========  =================  ========

@@ -57,7 +57,7 @@ DEFAULT_NODES = 24
 # u beyond this multiple of 1 + |u_a| is left out: below rounding in float32
 LARGEST_RATIO = 1e9
 # tolerance -> (nodes of the tuned rule, {nodes of a Gauss-Legendre rule: largest difficulty that it serves}), made by
-# `python -m experiments.quadrature_thresholds`
+# `python -m experiments.quadrature.thresholds`
 TOLERANCES: dict[float, tuple[int, dict[int, float]]] = {
     1e-2: (5, {1: 0.00484, 2: 0.0216, 3: 0.058, 4: 0.126}),
     1e-3: (7, {1: 0.00121, 2: 0.0095, 3: 0.0189, 4: 0.035, 6: 0.123}),

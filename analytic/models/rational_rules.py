@@ -1,6 +1,6 @@
 """Quadrature rules in Y of `rational_map`, tuned for their worst error over the whole domain.
 
-`python -m experiments.quadrature_tuning 5 6 7 8 9 10 12 14 16 24` makes them; how, and what it gains over
+`python -m experiments.quadrature.tuning 5 6 7 8 9 10 12 14 16 24` makes them; how, and what it gains over
 Gauss-Legendre nodes, is written there and in results/quadrature. They are for whole, long segments:
 on a short one their error is that of the sum of the weights, as large as elsewhere, where Gauss-Legendre is exact.
 """

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +11,14 @@ from experiments.atlas.errors import TRUTH
 from experiments.atlas.grid import Grid
 from experiments.atlas.method import method
 from experiments.atlas.timing import REFERENCE, processor
-from experiments.provenance import environment, package_version
+from experiments.provenance import made_by
 from scenes.replacing import replacing
 
 __all__ = ["write_page"]
 
 Row = dict[str, Any]
 
-# drawn by experiments.exponential_integral_map into the same folder
+# drawn by experiments.atlas.exponential_integral_map into the same folder
 EXPONENTIAL_INTEGRAL = "exponential_integral.png"
 # heading, precision, column of errors.csv, format
 ERROR_COLUMNS = (
@@ -87,13 +86,10 @@ def _of(rows: list[Row], label: str) -> list[Row]:
 
 
 def _made(seconds: float) -> str:
-    by = environment()
+    made = made_by("airlight atlas --out results/atlas", "numpy", "scipy", "mpmath")
     return (
-        f"Made on {datetime.now(UTC):%Y-%m-%d} at commit {by['commit']} by\n\n"
-        "    airlight atlas --out results/atlas\n\n"
-        f"in {seconds:.0f} s, with airlight {by['airlight']}, Python {by['python']}, NumPy {by['numpy']}, SciPy "
-        f"{package_version('scipy')} and mpmath {package_version('mpmath')} on {processor()}. The models are those of "
-        "`analytic.MODELS`. The command writes this page, its tables and its maps."
+        f"{made} It took {seconds:.0f} s on {processor()}. The models are those of `analytic.MODELS`. The command "
+        "writes this page, its tables and its maps."
     )
 
 

@@ -9,7 +9,7 @@ from analytic import phase
 from analytic.models.equiangular import equiangular
 from analytic.models.quadrature import quadrature
 from analytic.segments import Segments
-from experiments.quadrature_tuning import draw_segments
+from experiments.quadrature.tuning import draw_segments
 
 
 @pytest.mark.parametrize("function", [phase("isotropic"), phase("hg", g=0.5), phase("rayleigh")])

@@ -13,8 +13,8 @@ from analytic.models.quadrature_float32 import TOLERANCES, nodes_needed, quadrat
 from analytic.models.rational_map import RationalMap
 from analytic.models.rational_rules import RULES
 from analytic.segments import Segments
-from experiments.quadrature_thresholds import draw_lit_pieces
-from experiments.quadrature_tuning import draw_segments
+from experiments.quadrature.thresholds import draw_lit_pieces
+from experiments.quadrature.tuning import draw_segments
 
 PHASES = [
     phase("isotropic"),

@@ -11,7 +11,7 @@ from analytic.models import sun2005 as module
 from analytic.models.quadrature import quadrature
 from analytic.models.sun2005 import Table, f, make_table, read, smallest_table, sun2005, sun2005_sized, table_error
 from analytic.segments import Segments
-from experiments.quadrature_tuning import draw_segments
+from experiments.quadrature.tuning import draw_segments
 
 ISOTROPIC = phase("isotropic")
 

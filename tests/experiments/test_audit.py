@@ -7,10 +7,12 @@ from io import StringIO
 
 import pytest
 from rich.console import Console
+from typer.testing import CliRunner
 
 from analytic.thesis.audit import EQUATIONS, Entry, audit
-from experiments import audit as command
 from experiments import bars
+from experiments.audit import report as command
+from experiments.cli import app
 from scenes.errors import InputError
 
 KEYS = ["equation", "verdict", "finding", "residual_printed", "residual_repaired"]
@@ -62,7 +64,7 @@ def test_the_page(some, tmp_path, capsys):
     assert command.run_audit(as_json=True, out=folder)
     assert json.loads((folder / "audit.json").read_text()) == json.loads(capsys.readouterr().out)
     page = (folder / "README.md").read_text()
-    assert f"airlight audit --out {folder}" in page
+    assert "    airlight audit --out results/audit\n" in page
     assert "2 are right as printed, 4 are wrong." in page
     rows = [line for line in page.splitlines() if line.startswith("| ")][1:]
     assert [row.split(" | ")[0].lstrip("| ") for row in rows] == SOME
@@ -79,9 +81,9 @@ def test_a_folder_that_cannot_be_written_is_refused_first(monkeypatch, tmp_path)
     monkeypatch.setattr(command, "audit_one_by_one", never)
     file = tmp_path / "file"
     file.touch()
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="choose another --out"):
         command.run_audit(out=file)
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="choose another --out"):
         command.run_audit(out=file / "below")
 
 
@@ -92,3 +94,10 @@ def test_a_bar_moves_on_a_terminal_and_nowhere_else(some, monkeypatch, capsys):
     command.run_audit(as_json=True)
     assert f"{len(SOME)}/{len(EQUATIONS)}" in terminal.file.getvalue()
     assert json.loads(capsys.readouterr().out)
+
+
+def test_the_command_line_gives_the_exit_code(some, monkeypatch):
+    assert CliRunner().invoke(app, ["audit", "--json"]).exit_code == 0
+    bad = [*some, Entry("99", "wrong: it", "A finding.", 1.0, 2e-20)]
+    monkeypatch.setattr(command, "audit_one_by_one", lambda: iter(bad))
+    assert CliRunner().invoke(app, ["audit", "--json"]).exit_code == 1

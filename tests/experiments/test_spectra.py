@@ -12,8 +12,8 @@ import pytest
 from PIL import Image
 
 from analytic import phase, spectra
-from experiments import spectra as command
-from experiments.spectra_errors import ANGLE, COEFFICIENTS, DEPTHS, MEDIA, ONE_PHASE, measure_medium
+from experiments.spectra import page as command
+from experiments.spectra.errors import ANGLE, COEFFICIENTS, DEPTHS, MEDIA, ONE_PHASE, measure_medium
 from scenes.errors import InputError
 
 COMMITTED = Path(__file__).resolve().parents[2] / "results" / "spectra"

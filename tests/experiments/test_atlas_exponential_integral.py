@@ -9,8 +9,8 @@ import polars
 import pytest
 from matplotlib.image import imread
 
-from experiments import exponential_integral_map
-from experiments.exponential_integral_map import PANELS, Panel, write_map
+from experiments.atlas import exponential_integral_map
+from experiments.atlas.exponential_integral_map import PANELS, Panel, write_map
 
 
 @pytest.fixture

@@ -1,13 +1,11 @@
 """How many exponentials the airlight needs: the rules of `quadrature_float32` beside Gauss-Legendre.
 
-`python -m experiments.quadrature_study results/quadrature` writes the page; half a minute.
+`airlight quadrature --out results/quadrature` writes the page; half a minute.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -21,9 +19,11 @@ from analytic.models.rational_map import RationalRule, lobe_ratio
 from analytic.models.rational_rules import RULES
 from analytic.phase import Phase
 from analytic.segments import Segments
-from experiments.quadrature_thresholds import draw_lit_pieces
-from experiments.quadrature_tuning import draw_segments
+from experiments.provenance import made_by
+from experiments.quadrature.thresholds import draw_lit_pieces
+from experiments.quadrature.tuning import draw_segments
 from gpu_impl.quadrature_nodes import TUNED
+from scenes.replacing import make_folder, replacing
 
 SEGMENTS, SEED = 8000, 4711  # held out: the tuning draws other seeds
 # up to +-0.9, and beside the values of the tuning
@@ -99,8 +99,7 @@ def page() -> str:
     lines = [
         "# How many exponentials the airlight needs",
         "",
-        f"Made by `python -m experiments.quadrature_study results/quadrature` on {datetime.now(UTC):%Y-%m-%d} with "
-        f"NumPy {np.__version__}.",
+        made_by("airlight quadrature --out results/quadrature", "numpy"),
         "",
         f"Worst relative error in float64 over {SEGMENTS:,} held-out segments and {len(PHASES)} phase functions up to "
         "+-0.9, against `quadrature`. `draw_segments` says how they are drawn: H 1e-4 .. 50, optical positions "
@@ -139,10 +138,13 @@ def page() -> str:
 
 
 def write_study(folder: Path) -> None:
-    """Write README.md into a folder, made if need be."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "README.md").write_text(page(), encoding="utf-8")
+    """Write README.md into a folder, made if need be.
 
-
-if __name__ == "__main__":
-    write_study(Path(sys.argv[1]))
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    make_folder(folder, "choose another --out")
+    with replacing(folder / "README.md") as beside:
+        beside.write_text(page(), encoding="utf-8")

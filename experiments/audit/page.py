@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import json
-import platform
 from collections.abc import Sequence
 from dataclasses import asdict
-from datetime import UTC, datetime
 from pathlib import Path
 
 from analytic.thesis.audit import LARGEST_RIGHT, Entry
-from experiments.provenance import commit, package_version
-from scenes.errors import InputError
+from experiments.provenance import made_by
+from scenes.replacing import replacing
 
-__all__ = ["prepare_folder", "write_page"]
+__all__ = ["write_page"]
 
 PAGE = """# The equations of Weng 2010, audited
-
-    airlight audit --out {folder}
 
 {made}
 
@@ -42,27 +38,12 @@ and behind the segment); that it is wrong does not. [derivations.md](derivations
 """
 
 
-def prepare_folder(folder: Path) -> None:
-    """Make the folder, or say why it cannot be written.
-
-    Raises
-    ------
-    InputError
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name in ("audit.json", "README.md"):
-            (folder / name).touch()
-    except OSError as error:
-        raise InputError(f"--out {folder} cannot be written: {error.strerror}; choose another folder.") from None
-
-
 def write_page(folder: Path, entries: Sequence[Entry]) -> None:
     """Write audit.json and README.md, over those that are there.
 
     Parameters
     ----------
-    folder : Path  as `prepare_folder` left it
+    folder : Path  one that is there
     entries : sequence of Entry
 
     Raises
@@ -72,25 +53,17 @@ def write_page(folder: Path, entries: Sequence[Entry]) -> None:
     """
     right = sum(entry.verdict == "right" for entry in entries)
     text = PAGE.format(
-        folder=folder,
-        made=_made(),
+        made=made_by("airlight audit --out results/audit", "mpmath"),
         limit=LARGEST_RIGHT,
         right=right,
         wrong=len(entries) - right,
         rows="\n".join(map(_row, entries)),
         findings="\n".join(f"- **{entry.equation}**: {_plain(entry.finding)}" for entry in entries),
     )
-    try:
-        (folder / "audit.json").write_text(json.dumps([asdict(entry) for entry in entries], indent=2) + "\n")
-        (folder / "README.md").write_text(text)
-    except OSError as error:
-        raise InputError(f"--out {folder} cannot be written: {error.strerror}; choose another folder.") from None
-
-
-def _made() -> str:
-    versions = ", ".join(f"{name} {package_version(name)}" for name in ("airlight", "mpmath"))
-    date = datetime.now(UTC).date().isoformat()
-    return f"Made by that command on {date}: {versions}, commit {commit()}, Python {platform.python_version()}."
+    with replacing(folder / "audit.json") as beside:
+        beside.write_text(json.dumps([asdict(entry) for entry in entries], indent=2) + "\n", encoding="utf-8")
+    with replacing(folder / "README.md") as beside:
+        beside.write_text(text, encoding="utf-8")
 
 
 def _row(entry: Entry) -> str:

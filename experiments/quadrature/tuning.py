@@ -1,6 +1,6 @@
 """Nodes and weights of `analytic.models.quadrature_float32`, tuned for their worst error over a whole domain.
 
-`python -m experiments.quadrature_tuning 8 10 12` prints the rules with so many nodes, as `RULES` in
+`python -m experiments.quadrature.tuning 8 10 12` prints the rules with so many nodes, as `RULES` in
 `analytic/models/rational_rules.py` lists them; some ten seconds each.
 
 A Gauss-Legendre rule is the best one for polynomials. The airlight is no polynomial: it is one family of functions, of

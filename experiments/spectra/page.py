@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import spectra
-from experiments.provenance import environment, package_version
-from experiments.spectra_errors import (
+from experiments.provenance import environment, made_by, package_version
+from experiments.spectra.errors import (
     COEFFICIENTS,
     DEPTHS,
     MEDIA,
@@ -23,12 +23,12 @@ from experiments.spectra_errors import (
     measure_medium,
     select,
 )
-from experiments.spectra_figure import draw
+from experiments.spectra.figure import draw
 from scenes.errors import InputError
 from scenes.replacing import make_folder, replacing
 
 COMMAND = "airlight spectra --out results/spectra"
-VERSIONS = ("python", "numpy", "colour-science", "miepython")
+VERSIONS = ("numpy", "colour-science", "miepython")
 SHOWN = (0, 4, 6, 8)  # depths 0.1, 1, 3.2 and 10 of the tables
 
 
@@ -72,14 +72,13 @@ def _provenance() -> Row:
     return {
         "command": COMMAND,
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        **{key: known[key] for key in ("commit", "airlight", "python", "numpy")},
-        **{name: package_version(name) for name in ("colour-science", "miepython")},
+        **{key: known[key] for key in ("commit", "airlight", "python")},
+        **{name: package_version(name) for name in VERSIONS},
     }
 
 
 def page(rows: list[Row], cases: Mapping[str, Case], media: Mapping[str, spectra.SpectralMedium]) -> str:
     """The README of the results: every number in it is one of `rows` or made from `media`."""
-    made = rows[0]
     errors = [
         "| medium | depth | T: red | green | blue | Delta E | L: red | green | blue | Delta E |",
         "|---" * 10 + "|",
@@ -101,10 +100,7 @@ def page(rows: list[Row], cases: Mapping[str, Case], media: Mapping[str, spectra
             choices.append(f"| {name} | {DEPTHS[depth]:.2g} | {' | '.join(shown)} |")
     lobes = (f"{-np.minimum(row, 0).sum() / np.maximum(row, 0).sum():.0%}" for row in spectra.responses())
     return PAGE.format(
-        date=made["date"][:10],
-        commit=made["commit"],
-        command=made["command"],
-        versions=", ".join(f"{name} {made[name]}" for name in VERSIONS),
+        made=made_by(COMMAND, *VERSIONS),
         media="\n".join(f"- **{name}**: {case.what}." for name, case in cases.items()),
         lobes=", ".join(f"{share} in {channel}" for share, channel in zip(lobes, spectra.CHANNELS, strict=True)),
         coefficients="\n".join(coefficients),
@@ -132,11 +128,7 @@ def _triple(bands: NDArray[np.float64]) -> str:
 PAGE = """\
 # Three bands against the spectrum
 
-Made on {date} at commit {commit} by
-
-    {command}
-
-with {versions}.
+{made}
 Every row of [results.csv](results.csv) carries this.
 
 A renderer that works in linear Rec.709 gives a medium three coefficients and one phase function. Here the same light

@@ -1,6 +1,6 @@
 """Thresholds from which `quadrature_float32` chooses the number of nodes for a tolerance.
 
-`python -m experiments.quadrature_thresholds` prints `TOLERANCES` of `quadrature_float32`; a minute.
+`python -m experiments.quadrature.thresholds` prints `TOLERANCES` of `quadrature_float32`; a minute.
 
 A Gauss-Legendre rule of few nodes may serve every segment less difficult than the least difficult one that it fails:
 difficulty is measured before, from dY and the optical depth. `MARGIN` of the tolerance is what counts as failed, over
@@ -16,8 +16,8 @@ from analytic.models.quadrature import quadrature
 from analytic.models.quadrature_float32 import gauss_legendre, pieces
 from analytic.models.rational_rules import RULES
 from analytic.segments import Segments
-from experiments.quadrature_tuning import PHASES as TUNING_PHASES
-from experiments.quadrature_tuning import draw_segments
+from experiments.quadrature.tuning import PHASES as TUNING_PHASES
+from experiments.quadrature.tuning import draw_segments
 
 # tolerance -> nodes of the tuned rule that keeps it over the whole domain
 TUNED = {1e-2: 5, 1e-3: 7, 1e-4: 10, 1e-6: 24}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.spectra_errors import COEFFICIENTS, DEPTHS, ONE_PHASE, QUANTITIES, Row, select
+from experiments.spectra.errors import COEFFICIENTS, DEPTHS, ONE_PHASE, QUANTITIES, Row, select
 
 COLOURS = {"red": "#c0392b", "green": "#27893c", "blue": "#2a5db0"}
 LINES = {"mean": "-", "matched": "--", "sampled": ":"}

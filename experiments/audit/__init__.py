@@ -1,0 +1,1 @@
+"""`airlight audit`: the thesis's equations, as printed and repaired, in the terminal and as a page."""

@@ -1,0 +1,1 @@
+"""`airlight spectra`: what three bands get wrong against the spectrum."""
