@@ -1,26 +1,33 @@
-"""The nodes of airlight/quadrature.glsl."""
+"""The nodes of airlight/quadrature.glsl and airlight/part_of_the_leg.glsl, as GLSL constants."""
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterable
 
-# nodes -> (CLIP, Q) of the shader's map; the worst errors are 4.2e-3, 3.6e-4, 3.0e-4, 4.3e-5, 1.2e-6
-# (results/quadrature, which has a better map and better nodes: analytic/models/rational_rules.py)
-TUNED = {8: (8.0, 1.0), 10: (10.0, 1.4), 12: (10.0, 1.4), 16: (12.0, 2.0), 24: (16.0, 3.0)}
+from analytic.models.quadrature_float32 import gauss_legendre
+from analytic.models.rational_rules import RULES
+
+__all__ = ["gauss_legendre_glsl", "rational_rule_glsl"]
 
 
-def gauss_legendre_glsl(nodes: int) -> str:
-    """Gauss-Legendre nodes and weights on [0, 1] as GLSL constants.
+def rational_rule_glsl(nodes: int) -> str:
+    """A tuned rule on [0, 1] with the clip and the scale of the map that it goes with.
 
     Parameters
     ----------
-    nodes : one of `TUNED`
+    nodes : int  a key of `analytic.models.rational_rules.RULES`
     """
-    x, weights = np.polynomial.legendre.leggauss(nodes)
-    clip, q = TUNED[nodes]
+    rule = RULES[nodes]
+    head = f"const int RULE_NODES = {nodes};\nconst float CLIP = {rule.clip};\nconst float Q = {rule.q};\n"
+    return head + _array("RULE_NODE", rule.nodes) + _array("RULE_WEIGHT", rule.weights)
 
-    def array(name: str, values: np.ndarray) -> str:
-        return f"const float {name}[NODES] = float[]({', '.join(f'{value:.9e}' for value in values)});\n"
 
-    head = f"const int NODES = {nodes};\nconst float CLIP = {clip};\nconst float Q = {q};\n"
-    return head + array("NODE", (x + 1) / 2) + array("WEIGHT", weights / 2)
+def gauss_legendre_glsl(nodes: int) -> str:
+    """Gauss-Legendre nodes and weights on [0, 1]."""
+    x, weights = gauss_legendre(nodes)
+    return f"const int NODES = {nodes};\n" + _array("NODE", x) + _array("WEIGHT", weights)
+
+
+def _array(name: str, values: Iterable[float]) -> str:
+    texts = [f"{value:.9e}" for value in values]
+    return f"const float {name}[{len(texts)}] = float[]({', '.join(texts)});\n"

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from numbers import Integral
 from typing import Any
 
-from gpu_impl.quadrature_nodes import gauss_legendre_glsl
+from gpu_impl.quadrature_nodes import gauss_legendre_glsl, rational_rule_glsl
 from scenes.errors import InputError
 from scenes.messages import readable
 from scenes.model import Scene
@@ -47,8 +47,11 @@ AIRLIGHT_MODELS = {
     ),
     "quadrature": AirlightShader(
         "airlight/quadrature.glsl",
-        f"{QUADRATURE_NODES}-node Gauss-Legendre under a rational map",
-        generated={"<gauss-legendre>": gauss_legendre_glsl(QUADRATURE_NODES)},
+        f"{QUADRATURE_NODES} tuned nodes under a rational map",
+        generated={
+            "<rational-rule>": rational_rule_glsl(QUADRATURE_NODES),
+            "<gauss-legendre>": gauss_legendre_glsl(QUADRATURE_NODES),
+        },
     ),
 }
 

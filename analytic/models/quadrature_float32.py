@@ -126,13 +126,15 @@ def _rules(nodes: int | None, tolerance: float | None) -> tuple[list[RationalRul
         raise ValueError(f"tolerance must be one of {', '.join(f'{key:g}' for key in TOLERANCES)}: {tolerance}")
     largest, thresholds = TOLERANCES[tolerance]
     tuned = RULES[largest]
-    return [*(gauss_legendre(count, tuned) for count in thresholds), tuned], list(thresholds.values())
+    # under the map of the tuned rule
+    plain = [RationalRule(*gauss_legendre(count), tuned.clip, tuned.q) for count in thresholds]
+    return [*plain, tuned], list(thresholds.values())
 
 
-def gauss_legendre(count: int, like: RationalRule) -> RationalRule:
-    """The Gauss-Legendre rule of so many nodes under the map of another rule."""
+def gauss_legendre(count: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Nodes and weights on [0, 1]."""
     x, weights = np.polynomial.legendre.leggauss(count)
-    return RationalRule(tuple(((x + 1) / 2).tolist()), tuple((weights / 2).tolist()), like.clip, like.q)
+    return tuple(((x + 1) / 2).tolist()), tuple((weights / 2).tolist())
 
 
 def pieces(

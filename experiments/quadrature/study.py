@@ -22,7 +22,6 @@ from analytic.segments import Segments
 from experiments.provenance import made_by
 from experiments.quadrature.thresholds import draw_lit_pieces
 from experiments.quadrature.tuning import draw_segments
-from gpu_impl.quadrature_nodes import TUNED
 from scenes.replacing import make_folder, replacing
 
 SEGMENTS, SEED = 8000, 4711  # held out: the tuning draws other seeds
@@ -34,7 +33,8 @@ PHASES = (
     *(phase("schlick", k=k) for k in (-0.9, 0.4, 0.9)),
     *(phase("cornette_shanks", g=g) for g in (-0.9, -0.75, 0.9)),
 )
-# nodes -> (clip, q) for Gauss-Legendre under the map of the tuned rules, each from a search
+# nodes -> (clip, q) for Gauss-Legendre under the first map, and under that of the tuned rules, each from a search
+FIRST_MAP = {8: (8.0, 1.0), 10: (10.0, 1.4), 12: (10.0, 1.4), 16: (12.0, 2.0), 24: (16.0, 3.0)}
 SAME_MAP = {6: (10.76, 0.84), 8: (9.74, 0.72), 12: (11.69, 1.06), 16: (13.14, 1.47), 24: (15.09, 2.47)}
 EXPLORED = """
 ## What else was tried
@@ -62,15 +62,14 @@ of functions needs for 2.5e-4. What is left to gain is a set of nodes for each p
 
 def first_map(drawn: Segments, function: Phase, nodes: int) -> NDArray[np.float64]:
     """The airlight by Gauss-Legendre in Y = 1 / X, v = q (X^2 - X), q by the square root of the lobe's width."""
-    clip, q = TUNED[nodes]
+    clip, q = FIRST_MAP[nodes]
     q *= lobe_ratio(function) ** (1 / 2 if function.name == "schlick" else 2 / 3)
     v_a, h = drawn.v_a, drawn.optical_h
     span = np.minimum(drawn.difference_of_v, clip / h)
     x_a, x_b = ((1 + np.sqrt(1 + 4 * v / q)) / 2 for v in (v_a, v_a + span))
     dy = span / (q * (x_a + x_b - 1)) / (x_a * x_b)
     total = np.zeros_like(v_a)
-    rule = gauss_legendre(nodes, RULES[24])
-    for node, weight in zip(rule.nodes, rule.weights, strict=True):
+    for node, weight in zip(*gauss_legendre(nodes), strict=True):
         x = 1 / (1 / x_a - dy * node)
         past = q * dy * node * x * x_a * (x + x_a - 1)
         v = v_a + past
@@ -82,7 +81,7 @@ def first_map(drawn: Segments, function: Phase, nodes: int) -> NDArray[np.float6
 
 def same_map(drawn: Segments, function: Phase, nodes: int) -> NDArray[np.float64]:
     """The airlight by Gauss-Legendre under the map of the tuned rules, with its own clip and scale."""
-    rule = gauss_legendre(nodes, RationalRule((), (), *SAME_MAP[nodes]))
+    rule = RationalRule(*gauss_legendre(nodes), *SAME_MAP[nodes])
     ((_, _, mapping),) = pieces(drawn, function, rule)
     return mapping.integral(function, rule) / drawn.h * np.exp(-drawn.sigma_t * drawn.d_a)
 
@@ -110,7 +109,7 @@ def page() -> str:
         "|---|---|---|---|---|",
     ]
     for nodes in RULES:
-        first = worst(lambda s, p, n=nodes: first_map(s, p, n)) if nodes in TUNED else ""  # type: ignore[misc]
+        first = worst(lambda s, p, n=nodes: first_map(s, p, n)) if nodes in FIRST_MAP else ""  # type: ignore[misc]
         same = worst(lambda s, p, n=nodes: same_map(s, p, n)) if nodes in SAME_MAP else ""  # type: ignore[misc]
         tuned = worst(lambda s, p, n=nodes: quadrature_float32(s, p, nodes=n))  # type: ignore[misc]
         angle = max(np.max(np.abs(equiangular(drawn[visible], p, nodes=nodes) / exact[p][visible] - 1)) for p in PHASES)

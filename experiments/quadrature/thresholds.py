@@ -14,6 +14,7 @@ import numpy as np
 from analytic import phase
 from analytic.models.quadrature import quadrature
 from analytic.models.quadrature_float32 import gauss_legendre, pieces
+from analytic.models.rational_map import RationalRule
 from analytic.models.rational_rules import RULES
 from analytic.segments import Segments
 from experiments.quadrature.tuning import PHASES as TUNING_PHASES
@@ -52,7 +53,8 @@ def thresholds(tolerance: float, segments: int = 40_000, seed: int = 7) -> dict[
             exact = quadrature(drawn, function) * bare
             ((_, _, mapping),) = pieces(drawn, function, tuned)
             for count in least:
-                errors = np.abs(mapping.integral(function, gauss_legendre(count, tuned)) / exact - 1)
+                rule = RationalRule(*gauss_legendre(count), tuned.clip, tuned.q)
+                errors = np.abs(mapping.integral(function, rule) / exact - 1)
                 failed = mapping.difficulty[errors > MARGIN * tolerance]
                 least[count] = min(least[count], float(failed.min(initial=np.inf)))
     return {count: float(f"{0.995 * value:.3g}") for count, value in least.items()}

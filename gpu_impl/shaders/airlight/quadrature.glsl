@@ -1,12 +1,14 @@
-// Gauss-Legendre quadrature of the airlight integral under a rational map: accurate to float32 for any phase function.
+// Quadrature of the airlight integral under a rational map, accurate to float32 for any phase function: the twin of
+// analytic/models/quadrature_float32.py.
 //
 // With u = (x - x_h) / h, H = sigma_t h and v = u + sqrt(1 + u^2) = tan(theta / 2), theta the scattering angle
 // (Weng 2010, Eqs. 17 and 18 with the prefactor repaired),
 //     L = I sigma_s / h  e^{-sigma_t (t0 + d_a)}  int_{v_a}^{v_b} e^{-H (v - v_a)} Phi(cos theta) 2 / (1 + v^2) dv.
-// v = q (X^2 - X), Y = 1 / X takes [0, inf) to (0, 1] and is smooth at both ends; the nodes lie in Y. Beyond
-// v_a + CLIP / H nothing is left. NODES, CLIP and Q come with the nodes: n = 24 is off by at most 1e-6.
+// v = q (X^2 - 1), Y = 1 / X takes [0, inf) to (0, 1] and is smooth at both ends; the nodes lie in Y. Beyond
+// v_a + CLIP / H nothing is left. Nodes, weights, CLIP and Q are tuned together: 24 nodes are off by at most 1e-6.
 #include "light.glsl"
 #include "<phase>"
+#include "<rational-rule>"
 #include "<gauss-legendre>"
 #include "airlight/part_of_the_leg.glsl"
 
@@ -23,22 +25,20 @@ vec3 channel(Ray ray, Light light, float t0, float dt, float extinction) {
     float dv = min(du * (v_a + v_b) / (r_a + r_b), CLIP / max(H, 1e-30));
     v_b = v_a + dv;
     float q = Q * phase_scale();
-    float s_a = sqrt(1.0 + 4.0 * v_a / q), s_b = sqrt(1.0 + 4.0 * v_b / q);
-    float X_a = 0.5 * (1.0 + s_a), X_b = 0.5 * (1.0 + s_b);
-    float dY = 2.0 * dv / (q * (s_a + s_b)) / (X_a * X_b);
-    float Y_a = 1.0 / X_a;
+    float X_a = sqrt(1.0 + v_a / q), X_b = sqrt(1.0 + v_b / q), Y_a = 1.0 / X_a;
+    float dY = dv / (q * (X_a + X_b)) / (X_a * X_b);
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < NODES; ++i) {
-        float X = 1.0 / (Y_a - dY * NODE[i]);
-        float beyond = q * dY * NODE[i] * X * X_a * (X + X_a - 1.0);  // v - v_a
+    for (int i = 0; i < RULE_NODES; ++i) {
+        float X = 1.0 / (Y_a - dY * RULE_NODE[i]);
+        float beyond = q * dY * RULE_NODE[i] * X * X_a * (X + X_a);  // v - v_a
         float v = v_a + beyond, cos2 = 1.0 / (1.0 + v * v);
-        float term = phase(vec2(cos2, v * v * cos2)) * exp(-H * beyond) * (2.0 * X - 1.0) * X * X * cos2;
+        float term = phase(vec2(cos2, v * v * cos2)) * exp(-H * beyond) * X * X * X * cos2;
         // a hard spot is cut at its cone, and is even inside it
         bool even = light.beam_width >= light.cutoff_angle && SPOT_TEXTURE == 0;
         vec3 share = even ? vec3(1.0) : angular(light, ray.o + ray.d * (p.t_h + 0.5 * p.h * (v - 1.0 / v)));
-        sum += WEIGHT[i] * term * share;
+        sum += RULE_WEIGHT[i] * term * share;
     }
-    return 2.0 * q * dY * sum / p.h * exp(-extinction * (t0 + p.h * r_a));
+    return 4.0 * q * dY * sum / p.h * exp(-extinction * (t0 + p.h * r_a));
 }
 
 // For unit intensity and unit scattering coefficient.

@@ -7,8 +7,11 @@ float phase(vec2 half_angle) {
     return 0.0795774715459477 * (1.0 - g) * (1.0 + g) / (s * sqrt(s));
 }
 
-// its poles in v lie at +-i (1 - g) / (1 + g)
-float phase_scale() { return sqrt((1.0 - g) / (1.0 + g)); }
+// (p(-1) / p(1))^(1/4), the scale of its lobe
+float phase_scale() {
+    float lobe = (1.0 - g) / (1.0 + g);
+    return sqrt(lobe * sqrt(lobe));
+}
 
 int phase_kinks() { return 0; }
 float phase_kink(int i) { return 0.0; }

@@ -4,7 +4,7 @@
 // without cancellation, which 1 - cos(theta) at a forward peak is not. cos(theta) is their difference.
 float phase(vec2 half_angle) { return 0.0795774715459477; }
 
-// the scale of v = tan(theta / 2) on which the function changes: sets the map of the quadrature
+// (p(-1) / p(1))^(1/4), the scale of v = tan(theta / 2) on which the function changes: sets the map of the quadrature
 float phase_scale() { return 1.0; }
 
 // where its slope jumps: how many places there are, and their v in ascending order

@@ -7,8 +7,8 @@ float phase(vec2 half_angle) {
     return 0.0795774715459477 * (1.0 - k) * (1.0 + k) / (s * s);
 }
 
-// its poles in v lie at +-i sqrt((1 - k) / (1 + k))
-float phase_scale() { return sqrt(sqrt((1.0 - k) / (1.0 + k))); }
+// (p(-1) / p(1))^(1/4), the scale of its lobe
+float phase_scale() { return sqrt((1.0 - k) / (1.0 + k)); }
 
 int phase_kinks() { return 0; }
 float phase_kink(int i) { return 0.0; }

@@ -11,11 +11,8 @@ float phase(vec2 half_angle) {
     return mix(near, far, position - float(i));
 }
 
-// As hg's with the same forward peak: there (1 - g) / (1 + g) = (4 pi p(1) (1 + g))^(-1/2), of which the fourth root
-// of 1 + g is left out.
-float phase_scale() {
-    return min(1.0, inversesqrt(sqrt(12.5663706143592 * max(phase_table[phase_table.length() - 1], 1e-20))));
-}
+// it is smooth from one value to the next, whatever lobe they show together
+float phase_scale() { return 1.0; }
 
 int phase_kinks() { return phase_table.length() - 2; }
 
