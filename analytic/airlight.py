@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from analytic.inputs import real_array
 from analytic.medium import Medium
 from analytic.models import MODELS, AirlightModel
 from analytic.phase import Phase
@@ -65,11 +66,11 @@ def airlight(
 
     Source: Weng 2010, L_m of Eq. 16.
     """
-    if model not in MODELS:
+    if not isinstance(model, str) or model not in MODELS:
         raise ValueError(f"model must be one of {', '.join(sorted(MODELS))}: {model!r}")
     if not isinstance(medium, Medium):
         raise TypeError(f"medium must be an analytic.Medium, not {type(medium).__name__}")
-    if not hasattr(phase, "evaluate"):
+    if not isinstance(phase, Phase):
         raise TypeError(f"phase must be made by analytic.phase, not be a {type(phase).__name__}")
     chosen, precision = MODELS[model], np.dtype(dtype)
     if precision not in (np.float32, np.float64):
@@ -77,7 +78,7 @@ def airlight(
     if not chosen.takes(phase):
         raise ValueError(f"phase must be {' or '.join(chosen.phases)} for the model {model}, not {phase.name}")
     height, start, end = _positions(h, x_a, x_b)
-    power = np.asarray(intensity, dtype=np.float64)
+    power = real_array("intensity", intensity)
     if not np.all(np.isfinite(power)) or np.any(power < 0):
         raise ValueError("intensity must be finite and not negative")
 
@@ -98,8 +99,13 @@ def airlight(
     given = pieces[plain] if precision == np.float64 else pieces[plain].astype(precision)
     result[plain] = chosen.function(given, phase, **options)
 
-    scale = power * medium.sigma_s
-    with np.errstate(invalid="ignore"):  # no light and no scattering make no airlight, at the lamp neither
+    try:
+        np.broadcast_shapes(power.shape, medium.sigma_s.shape, shape)
+    except ValueError:
+        raise ValueError(f"intensity must have a shape that broadcasts with {shape}: {power.shape}") from None
+    # no light and no scattering make no airlight, at the lamp neither; what float64 cannot hold is inf
+    with np.errstate(invalid="ignore", over="ignore"):
+        scale = power * medium.sigma_s
         return np.where(scale > 0, scale * result.reshape(shape), 0.0)
 
 
@@ -107,7 +113,12 @@ def _positions(
     h: ArrayLike, x_a: ArrayLike, x_b: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """The three lengths as float64 arrays of one shape, once they make sense."""
-    height, start, end = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in (h, x_a, x_b)))
+    given = real_array("h", h), real_array("x_a", x_a), real_array("x_b", x_b)
+    try:
+        height, start, end = np.broadcast_arrays(*given)
+    except ValueError:
+        shapes = ", ".join(str(array.shape) for array in given)
+        raise ValueError(f"h, x_a and x_b must have shapes that broadcast: {shapes}") from None
     if not np.all(np.isfinite(height)) or np.any(height < 0):
         raise ValueError("h must be finite and not negative")
     if not np.all(np.isfinite(start)):

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.inputs import real_array
+
 __all__ = ["Medium", "transmittance"]
 
 
@@ -61,6 +63,14 @@ class Medium:
         extinction = _coefficient("sigma_t", sigma_t)
         return cls(share * extinction, extinction)
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Medium):
+            return NotImplemented
+        return np.array_equal(self.sigma_s, other.sigma_s) and np.array_equal(self.sigma_t, other.sigma_t)
+
+    def __hash__(self) -> int:
+        return hash((tuple(self.sigma_s.flat), tuple(self.sigma_t.flat)))
+
     @property
     def albedo(self) -> NDArray[np.float64]:
         """sigma_s / sigma_t, () or (3,); 0 where the medium is clear."""
@@ -68,7 +78,7 @@ class Medium:
 
 
 def _coefficient(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    array = np.asarray(value, dtype=np.float64)
+    array = real_array(name, value)
     if array.shape not in ((), (3,)):
         raise ValueError(f"{name} must be a scalar or an RGB triple, not of shape {array.shape}")
     if not np.all(np.isfinite(array)) or np.any(array < 0):
@@ -91,14 +101,15 @@ def transmittance(sigma_t: ArrayLike, distance: ArrayLike) -> NDArray[np.float64
     Raises
     ------
     ValueError
-        If sigma_t or distance is negative or NaN.
+        If sigma_t or distance is negative or NaN, or sigma_t infinite.
 
     Source: Weng 2010, Eqs. 2 and 5 with beta_ex = beta_ab + beta_sc.
     """
-    extinction, length = np.asarray(sigma_t, dtype=np.float64), np.asarray(distance, dtype=np.float64)
-    for name, value in (("sigma_t", extinction), ("distance", length)):
-        if not np.all(value >= 0):
-            raise ValueError(f"{name} must not be negative or NaN")
+    extinction, length = real_array("sigma_t", sigma_t), real_array("distance", distance)
+    if not (np.all(extinction >= 0) and np.all(np.isfinite(extinction))):
+        raise ValueError("sigma_t must be finite and not negative")
+    if not np.all(length >= 0):
+        raise ValueError("distance must not be negative or NaN")
     with np.errstate(invalid="ignore"):
         depth = np.where(extinction == 0, 0.0, extinction * length)
     return np.exp(-depth)

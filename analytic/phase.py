@@ -49,7 +49,7 @@ def phase(name: str, **parameters: float | Sequence[float]) -> Phase:
     >>> float(phase("hg", g=0.6).mean_cosine)
     0.6
     """
-    if name not in PHASES:
+    if not isinstance(name, str) or name not in PHASES:
         raise ValueError(f"name must be one of {', '.join(sorted(PHASES))}: {name!r}")
     wanted = [field.name for field in fields(PHASES[name])]  # type: ignore[arg-type]
     for parameter in parameters:

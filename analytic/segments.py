@@ -10,8 +10,9 @@ from numpy.typing import DTypeLike, NDArray
 
 __all__ = ["Segments", "h_times_v"]
 
-# h enters as (h / x)^2: this much of |x| is nothing in float64
-NEGLIGIBLE = 1e-12
+# h enters as (h / (x r))^2, r the width of a phase function's peak: this much of |x| is nothing in float64 for any peak
+# that a float64 parameter can have
+NEGLIGIBLE = 1e-25
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +77,12 @@ class Segments:
         return np.hypot(self.h, self.x_b)
 
     @cached_property
+    def depth_through_b(self) -> NDArray[np.floating]:
+        """Optical depth from the light to the segment's end and back to the eye, (n,); 0 in a clear medium."""
+        with np.errstate(invalid="ignore", over="ignore"):  # an infinite clear segment: inf * 0
+            return np.where(self.sigma_t == 0, 0, self.sigma_t * (self.d_b + self.length))
+
+    @cached_property
     def v_a(self) -> NDArray[np.floating]:
         """V = u + sqrt(1 + u^2) = tan(theta / 2) at the eye, (n,), theta the scattering angle."""
         return h_times_v(self.h, self.x_a) / self.h
@@ -110,7 +117,8 @@ class Segments:
 
     @property
     def _negligible_h(self) -> NDArray[np.floating]:
-        return NEGLIGIBLE * np.maximum(0, np.maximum(self.x_a, -self.x_b))
+        away = np.maximum(self.x_a, -self.x_b)
+        return np.where(away > 0, np.maximum(NEGLIGIBLE * away, np.finfo(away.dtype).tiny), 0)
 
 
 def h_times_v(h: NDArray[np.floating], x: NDArray[np.floating]) -> NDArray[np.floating]:

@@ -1,7 +1,7 @@
 """Models of the airlight: how much light one lit piece of a ray sends to the eye.
 
 One file each, named by author and year where published. A new one is a file with a function of (segments, phase) and
-its record, an `AirlightModel` named `MODEL`, and its name in the two lines below. A paper with several variants is a
+its record, an `AirlightModel` named `MODEL`, and its name in the two lists below. A paper with several variants is a
 folder that lists them as `MODELS`.
 """
 
@@ -17,20 +17,17 @@ from analytic.models import (
     sun2005,
     weng2010,
 )
-from analytic.models.model import AirlightModel
+from analytic.models.model import AirlightModel, by_name
 
 __all__ = ["MODELS", "AirlightModel"]
 
-MODELS: dict[str, AirlightModel] = {
-    model.name: model
-    for model in (
-        quadrature.MODEL,
-        riemann.MODEL,
-        one_ei.MODEL,
-        pegoraro2009.MODEL,
-        *weng2010.MODELS,
-        quadrature_float32.MODEL,
-        equiangular.MODEL,
-        *sun2005.MODELS,
-    )
-}
+MODELS: dict[str, AirlightModel] = by_name(
+    quadrature.MODEL,
+    riemann.MODEL,
+    one_ei.MODEL,
+    pegoraro2009.MODEL,
+    *weng2010.MODELS,
+    quadrature_float32.MODEL,
+    equiangular.MODEL,
+    *sun2005.MODELS,
+)

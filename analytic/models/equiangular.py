@@ -28,6 +28,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.inputs import whole_number
 from analytic.models.model import AirlightModel
 from analytic.phase import Phase
 from analytic.segments import Segments
@@ -55,8 +56,7 @@ def equiangular(segments: Segments, phase: Phase, *, nodes: int = 16) -> NDArray
 
     Source: Kulla and Fajardo 2012, whose sampling density this is; Weng 2010, Eq. 16.
     """
-    if nodes < 1:
-        raise ValueError(f"nodes must be 1 or more: {nodes}")
+    nodes = whole_number("nodes", nodes, 1)
     abscissae, weights = np.polynomial.legendre.leggauss(nodes)
     s = segments
     u_a, u_b = s.x_a / s.h, s.x_b / s.h

@@ -117,12 +117,12 @@ def _rules(nodes: int | None, tolerance: float | None) -> tuple[list[RationalRul
     """The rules to choose from, and the largest difficulty for all but the last one."""
     if tolerance is None:
         wanted = DEFAULT_NODES if nodes is None else nodes
-        if wanted not in RULES:
+        if wanted not in tuple(RULES):
             raise ValueError(f"nodes must be one of {', '.join(map(str, RULES))}: {nodes}")
         return [RULES[wanted]], []
     if nodes is not None:
         raise ValueError("nodes must be left out where a tolerance is given")
-    if tolerance not in TOLERANCES:
+    if tolerance not in tuple(TOLERANCES):
         raise ValueError(f"tolerance must be one of {', '.join(f'{key:g}' for key in TOLERANCES)}: {tolerance}")
     largest, thresholds = TOLERANCES[tolerance]
     tuned = RULES[largest]

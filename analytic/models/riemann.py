@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.inputs import whole_number
 from analytic.models.model import AirlightModel
 from analytic.phase import Phase
 from analytic.segments import Segments
@@ -28,12 +29,11 @@ def riemann(segments: Segments, phase: Phase, *, steps: int = 64) -> NDArray[np.
     Raises
     ------
     ValueError
-        If steps is below 1 or x_b is infinite.
+        If steps is no whole number of 1 or more, or x_b is infinite.
 
     Source: Weng 2010, Eq. 16, discretised; Nishita, Miyawaki and Nakamae 1987.
     """
-    if steps < 1:
-        raise ValueError(f"steps must be 1 or more: {steps}")
+    steps = whole_number("steps", steps, 1)
     if not np.all(np.isfinite(segments.x_b)):
         raise ValueError("x_b must be finite for the model riemann: equal steps do not reach infinity")
     total = np.zeros_like(segments.h)

@@ -8,7 +8,12 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Phase"]
+from analytic.inputs import real_array, real_number
+
+__all__ = ["Phase", "as_cosine", "asymmetry"]
+
+# how far the dot product of two unit vectors of float32 may be beyond 1
+BEYOND = 1e-6
 
 
 class Phase(ABC):
@@ -17,8 +22,14 @@ class Phase(ABC):
     name: ClassVar[str]
 
     def evaluate(self, cos_theta: ArrayLike) -> NDArray[np.float64]:
-        """Value [1/sr] at cos_theta, (...), from -1 (backward) to 1 (forward)."""
-        cosine = np.asarray(cos_theta, dtype=np.float64)
+        """Value [1/sr] at cos_theta, (...), from -1 (backward) to 1 (forward); beyond by rounding counts as the end.
+
+        Raises
+        ------
+        ValueError
+            If cos_theta is NaN or beyond -1 or 1 by more than rounding.
+        """
+        cosine = as_cosine(cos_theta)
         return np.asarray(self.of_half_angle((1 + cosine) / 2, (1 - cosine) / 2))
 
     @abstractmethod
@@ -47,3 +58,19 @@ class Phase(ABC):
     def kinks(self) -> tuple[float, ...]:
         """Cosines, ascending, between which the function is analytic; a quadrature has to stop at each."""
         return ()
+
+
+def as_cosine(cos_theta: ArrayLike) -> NDArray[np.float64]:
+    """Cosines, (...), in float64 and from -1 to 1; ValueError where they are none."""
+    cosine = real_array("cos_theta", cos_theta)
+    if not np.all(np.abs(cosine) <= 1 + BEYOND):
+        raise ValueError("cos_theta must lie between -1 and 1")
+    return np.clip(cosine, -1, 1)
+
+
+def asymmetry(name: str, value: float) -> float:
+    """Parameter strictly between -1 and 1, as a Python float; ValueError by its name where it is none."""
+    number = real_number(name, value)
+    if not abs(number) < 1:
+        raise ValueError(f"{name} must lie strictly between -1 and 1: {number}")
+    return number

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.phases.base import Phase
+from analytic.phases.base import Phase, asymmetry
 
 __all__ = ["HenyeyGreenstein"]
 
@@ -33,9 +33,7 @@ class HenyeyGreenstein(Phase):
     name: ClassVar[str] = "hg"
 
     def __post_init__(self) -> None:
-        if not abs(self.g) < 1:
-            raise ValueError(f"g must lie strictly between -1 and 1: {self.g}")
-        object.__setattr__(self, "g", float(self.g))  # a NumPy scalar would widen float32 arrays
+        object.__setattr__(self, "g", asymmetry("g", self.g))
 
     def of_half_angle(self, cos2: NDArray[np.floating], sin2: NDArray[np.floating]) -> NDArray[np.floating]:
         """Value [1/sr] from cos^2(theta / 2) and sin^2(theta / 2), (...)."""

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.phases.base import Phase
+from analytic.phases.base import Phase, asymmetry
 
 __all__ = ["Schlick"]
 
@@ -38,9 +38,7 @@ class Schlick(Phase):
     name: ClassVar[str] = "schlick"
 
     def __post_init__(self) -> None:
-        if not abs(self.k) < 1:
-            raise ValueError(f"k must lie strictly between -1 and 1: {self.k}")
-        object.__setattr__(self, "k", float(self.k))  # a NumPy scalar would widen float32 arrays
+        object.__setattr__(self, "k", asymmetry("k", self.k))
 
     def of_half_angle(self, cos2: NDArray[np.floating], sin2: NDArray[np.floating]) -> NDArray[np.floating]:
         """Value [1/sr] from cos^2(theta / 2) and sin^2(theta / 2), (...)."""

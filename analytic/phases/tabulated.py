@@ -9,7 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.phases.base import Phase
+from analytic.inputs import real_array
+from analytic.phases.base import Phase, as_cosine
 
 __all__ = ["Tabulated"]
 
@@ -36,14 +37,14 @@ class Tabulated(Phase):
     Notes
     -----
     Where the table falls to 0, a value close to it is as accurate as cos theta itself allows: 1e-16 of the largest,
-    and to the last digit at a right angle, where cos theta is small.
+    and to the last digit at a right angle (`evaluate`), where cos theta is small, and at both ends (`of_half_angle`).
     """
 
     values: Sequence[float]
     name: ClassVar[str] = "tabulated"
 
     def __post_init__(self) -> None:
-        table = np.asarray(self.values, dtype=np.float64)
+        table = real_array("values", self.values)
         if table.ndim != 1 or table.size < 2:
             raise ValueError(f"values must be two numbers or more in a row: {self.values!r}")
         if not np.all(np.isfinite(table)) or np.any(table < 0):
@@ -64,15 +65,22 @@ class Tabulated(Phase):
     def evaluate(self, cos_theta: ArrayLike) -> NDArray[np.float64]:
         """Value [1/sr] at cos_theta, (...)."""
         # a mean of both neighbours keeps its digits where one of them is 0
-        cosine = np.clip(np.asarray(cos_theta, dtype=np.float64), -1, 1)
+        cosine = as_cosine(cos_theta)
         nodes, values = self._nodes, np.asarray(self.values)
         i = np.clip(np.searchsorted(nodes, cosine, "right") - 1, 0, nodes.size - 2)
         from_low, to_high = cosine - nodes[i], nodes[i + 1] - cosine
         return np.asarray((values[i] * to_high + values[i + 1] * from_low) / (from_low + to_high))
 
     def of_half_angle(self, cos2: NDArray[np.floating], sin2: NDArray[np.floating]) -> NDArray[np.floating]:
-        """Value [1/sr] from cos^2(theta / 2) and sin^2(theta / 2), (...)."""
-        return self.evaluate(cos2 - sin2).astype(np.asarray(cos2).dtype)
+        """Value [1/sr] from cos^2(theta / 2) and sin^2(theta / 2), (...), counted from the nearer end."""
+        last = len(self.values) - 1
+        values = np.asarray(self.values, dtype=np.asarray(cos2).dtype)
+        place = np.asarray(np.minimum(cos2, sin2) * last)
+        i = np.minimum(place.astype(int), last - 1)
+        to_far = place - i.astype(place.dtype)
+        forward = sin2 < cos2
+        near, far = values[np.where(forward, last - i, i)], values[np.where(forward, last - i - 1, i + 1)]
+        return near * (1 - to_far) + far * to_far
 
     @property
     def mean_cosine(self) -> float:

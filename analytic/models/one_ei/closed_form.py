@@ -69,9 +69,7 @@ def one_ei(segments: Segments, phase: Phase) -> Floats:
     s = segments
     q, residues = _partial_fractions(phase)
     near = np.exp(-s.sigma_t * s.d_a) * _tail(s.h, s.x_a, s.sigma_t, q, residues)
-    with np.errstate(invalid="ignore"):  # an infinite clear segment: inf * 0
-        depth = np.where(s.sigma_t == 0, 0, s.sigma_t * (s.d_b + s.length))
-    far = np.exp(-depth) * _tail(s.h, s.x_b, s.sigma_t, q, residues)
+    far = np.exp(-s.depth_through_b) * _tail(s.h, s.x_b, s.sigma_t, q, residues)
     return (near - far) / s.h
 
 

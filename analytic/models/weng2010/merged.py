@@ -39,9 +39,7 @@ def weng2010(segments: Segments, phase: Phase) -> NDArray[np.floating]:
     """
     s = segments
     near = np.exp(-s.sigma_t * s.d_a) * _g(s.h, s.x_a, s.sigma_t)
-    with np.errstate(invalid="ignore"):  # an infinite clear segment: inf * 0
-        depth = np.where(s.sigma_t == 0, 0, s.sigma_t * (s.d_b + s.length))
-    far = np.exp(-depth) * _g(s.h, s.x_b, s.sigma_t)
+    far = np.exp(-s.depth_through_b) * _g(s.h, s.x_b, s.sigma_t)
     return (near - far) / (2 * np.pi * s.h)
 
 

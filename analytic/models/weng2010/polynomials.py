@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.inputs import whole_number
 from analytic.phase import Phase
 
 __all__ = ["POLYNOMIAL_PHASES", "near_minimax", "taylor"]
@@ -52,7 +53,7 @@ def taylor(phase: Phase, terms: int) -> Coefficients:
 
     Source: Weng 2010, Eqs. 22 and 29.
     """
-    _check(terms)
+    terms = whole_number("terms", terms, 1, MOST_TERMS)
     front, back = (_taylor(side, terms) for side in (phase, _turned(phase)))
     return front, back
 
@@ -90,7 +91,7 @@ def near_minimax(phase: Phase, terms: int) -> Coefficients:
     ValueError
         If terms is below 1 or above 100.
     """
-    _check(terms)
+    terms = whole_number("terms", terms, 1, MOST_TERMS)
     front, back = (_fit(side, terms) for side in (phase, _turned(phase)))
     return front, [(-1) ** n * coefficient for n, coefficient in enumerate(back)]
 
@@ -105,11 +106,6 @@ def _fit(phase: Phase, terms: int) -> list[float]:
     series = np.polynomial.Chebyshev(fit, domain=[0, 1])
     powers = series.convert(kind=np.polynomial.Polynomial, domain=[-1, 1]).coef
     return np.pad(powers, (0, terms - powers.size)).tolist()
-
-
-def _check(terms: int) -> None:
-    if not 1 <= terms <= MOST_TERMS:
-        raise ValueError(f"terms must lie between 1 and {MOST_TERMS}: {terms}")
 
 
 def _turned(phase: Phase) -> Phase:
