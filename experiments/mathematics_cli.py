@@ -31,8 +31,11 @@ def atlas(
     """
     from experiments.atlas.atlas import write_atlas
     from experiments.atlas.exponential_integral_map import write_map
+    from experiments.atlas.page import TITLE
     from experiments.console import notices, say
+    from experiments.pages import prepare_page
 
+    prepare_page(out, TITLE)
     with notices.status("atlas") as status:
         write_map(out)
         write_atlas(out, status.update)

@@ -54,16 +54,6 @@ def environment() -> dict[str, str]:
     }
 
 
-def made_by(command: str, *packages: str) -> str:
-    """Lines of a page of results that say which command made it, when, and with what."""
-    known = environment()
-    versions = ", ".join(f"{name} {package_version(name)}" for name in packages)
-    return (
-        f"Made on {datetime.now(UTC):%Y-%m-%d} at commit {known['commit']} by\n\n    {command}\n\n"
-        f"with airlight {known['airlight']}, Python {known['python']}, {versions}."
-    )
-
-
 def describe_scene(scene: Scene) -> dict[str, str]:
     """What a row of results says of its scene; the parameters as a JSON object, whatever signs their values hold."""
     from scenes.manifest import frozen_version

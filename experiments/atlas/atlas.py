@@ -16,10 +16,11 @@ from experiments.atlas.counting import count_operations
 from experiments.atlas.errors import PRECISIONS, TRUTH, ErrorMap, make_case, map_errors, phase_label
 from experiments.atlas.figures import write_figure
 from experiments.atlas.grid import CELLS, Grid, make_grid
-from experiments.atlas.page import write_page
+from experiments.atlas.page import TITLE, write_page
 from experiments.atlas.timing import SEGMENTS, time_models
 from experiments.atlas.truth import worst_of_truth
-from scenes.replacing import make_folder, replacing
+from experiments.pages import prepare_page
+from scenes.replacing import replacing
 
 if TYPE_CHECKING:
     from polars import DataFrame
@@ -51,7 +52,7 @@ def write_atlas(
         If the folder cannot be written.
     """
     began = perf_counter()
-    make_folder(folder, "choose another --out")
+    prepare_page(folder, TITLE)
     grid = make_grid(cells)
     errors: list[Row] = []
     costs: list[Row] = []

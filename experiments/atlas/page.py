@@ -11,12 +11,14 @@ from experiments.atlas.errors import TRUTH
 from experiments.atlas.grid import Grid
 from experiments.atlas.method import method
 from experiments.atlas.timing import REFERENCE, processor
-from experiments.provenance import made_by
+from experiments.pages import made_by
 from scenes.replacing import replacing
 
-__all__ = ["write_page"]
+__all__ = ["TITLE", "write_page"]
 
 Row = dict[str, Any]
+
+TITLE = "The atlas: how wrong each airlight model is, and what it costs"
 
 # drawn by experiments.atlas.exponential_integral_map into the same folder
 EXPONENTIAL_INTEGRAL = "exponential_integral.png"
@@ -57,7 +59,7 @@ def write_page(
     """
     visible = [row for row in errors if row["segments"] == "visible"]
     parts = [
-        "# The atlas: how wrong each airlight model is, and what it costs",
+        f"# {TITLE}",
         _made(seconds),
         "## What is measured",
         method(grid, truths, timed),

@@ -8,12 +8,13 @@ from dataclasses import asdict
 from pathlib import Path
 
 from analytic.thesis.audit import LARGEST_RIGHT, Entry
-from experiments.provenance import made_by
+from experiments.pages import made_by
 from scenes.replacing import replacing
 
-__all__ = ["write_page"]
+__all__ = ["TITLE", "write_page"]
 
-PAGE = """# The equations of Weng 2010, audited
+TITLE = "The equations of Weng 2010, audited"
+PAGE = """# {title}
 
 {made}
 
@@ -53,6 +54,7 @@ def write_page(folder: Path, entries: Sequence[Entry]) -> None:
     """
     right = sum(entry.verdict == "right" for entry in entries)
     text = PAGE.format(
+        title=TITLE,
         made=made_by("airlight audit --out results/audit", "mpmath"),
         limit=LARGEST_RIGHT,
         right=right,

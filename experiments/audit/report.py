@@ -12,10 +12,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from rich.table import Table
 
 from analytic.thesis.audit import EQUATIONS, LARGEST_RIGHT, Entry, audit_one_by_one
-from experiments.audit.page import write_page
+from experiments.audit.page import TITLE, write_page
 from experiments.bars import Bars
 from experiments.console import console, notices, say
-from scenes.replacing import make_folder
+from experiments.pages import prepare_page
 
 __all__ = ["audit_table", "run_audit"]
 
@@ -58,7 +58,7 @@ def run_audit(as_json: bool = False, out: Path | None = None) -> bool:
     """
     if out:
         # refused before half a minute of work
-        make_folder(out, "choose another --out")
+        prepare_page(out, TITLE)
     with _AuditBar() as bar:
         entries = bar.entries()
     if out:

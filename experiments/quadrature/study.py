@@ -19,11 +19,12 @@ from analytic.models.rational_map import RationalRule, lobe_ratio
 from analytic.models.rational_rules import RULES
 from analytic.phase import Phase
 from analytic.segments import Segments
-from experiments.provenance import made_by
+from experiments.pages import made_by, prepare_page
 from experiments.quadrature.thresholds import draw_lit_pieces
 from experiments.quadrature.tuning import draw_segments
-from scenes.replacing import make_folder, replacing
+from scenes.replacing import replacing
 
+TITLE = "How many exponentials the airlight needs"
 SEGMENTS, SEED = 8000, 4711  # held out: the tuning draws other seeds
 # up to +-0.9, and beside the values of the tuning
 PHASES = (
@@ -96,7 +97,7 @@ def page() -> str:
         return f"{max(np.max(np.abs(model(drawn, function) / exact[function] - 1)) for function in PHASES):.1e}"
 
     lines = [
-        "# How many exponentials the airlight needs",
+        f"# {TITLE}",
         "",
         made_by("airlight quadrature --out results/quadrature", "numpy"),
         "",
@@ -144,6 +145,6 @@ def write_study(folder: Path) -> None:
     InputError
         If the folder cannot be written.
     """
-    make_folder(folder, "choose another --out")
+    prepare_page(folder, TITLE)
     with replacing(folder / "README.md") as beside:
         beside.write_text(page(), encoding="utf-8")

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import spectra
-from experiments.provenance import environment, made_by, package_version
+from experiments.pages import made_by, prepare_page
+from experiments.provenance import environment, package_version
 from experiments.spectra.errors import (
     COEFFICIENTS,
     DEPTHS,
@@ -25,8 +26,9 @@ from experiments.spectra.errors import (
 )
 from experiments.spectra.figure import draw
 from scenes.errors import InputError
-from scenes.replacing import make_folder, replacing
+from scenes.replacing import replacing
 
+TITLE = "Three bands against the spectrum"
 COMMAND = "airlight spectra --out results/spectra"
 VERSIONS = ("numpy", "colour-science", "miepython")
 SHOWN = (0, 4, 6, 8)  # depths 0.1, 1, 3.2 and 10 of the tables
@@ -51,7 +53,7 @@ def write_spectra(folder: Path, cases: Mapping[str, Case] = MEDIA) -> list[Row]:
     """
     import polars
 
-    make_folder(folder, "choose another --out")
+    prepare_page(folder, TITLE)
     try:
         media = {name: case.make() for name, case in cases.items()}
     except ModuleNotFoundError as error:
@@ -100,6 +102,7 @@ def page(rows: list[Row], cases: Mapping[str, Case], media: Mapping[str, spectra
             choices.append(f"| {name} | {DEPTHS[depth]:.2g} | {' | '.join(shown)} |")
     lobes = (f"{-np.minimum(row, 0).sum() / np.maximum(row, 0).sum():.0%}" for row in spectra.responses())
     return PAGE.format(
+        title=TITLE,
         made=made_by(COMMAND, *VERSIONS),
         media="\n".join(f"- **{name}**: {case.what}." for name, case in cases.items()),
         lobes=", ".join(f"{share} in {channel}" for share, channel in zip(lobes, spectra.CHANNELS, strict=True)),
@@ -126,7 +129,7 @@ def _triple(bands: NDArray[np.float64]) -> str:
 
 
 PAGE = """\
-# Three bands against the spectrum
+# {title}
 
 {made}
 Every row of [results.csv](results.csv) carries this.
