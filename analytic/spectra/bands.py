@@ -30,9 +30,11 @@ import warnings
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from analytic.inputs import real_number
 from analytic.medium import Medium
+from analytic.spectra.coefficients import checked_coefficients
 
 __all__ = ["CHANNELS", "LUMINANCE", "WAVELENGTHS", "responses", "three_bands"]
 
@@ -43,7 +45,6 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # ITU-R BT.709-6, item 3.2
 LUMINANCE.setflags(write=False)
 
 
-@cache
 def responses(illuminant: str = "D65") -> NDArray[np.float64]:
     """Weights of the wavelengths in the channels of linear Rec.709; each row sums to 1, and has negative entries.
 
@@ -58,10 +59,17 @@ def responses(illuminant: str = "D65") -> NDArray[np.float64]:
     Raises
     ------
     ValueError
-        If the illuminant is unknown.
+        If the illuminant is no name, or unknown.
 
     Source: CIE 15:2018 (tristimulus values by summation); ITU-R BT.709-6, items 1.3 and 1.4 (primaries and white).
     """
+    if not isinstance(illuminant, str):
+        raise ValueError(f"illuminant must be a name, such as D65 or A: {illuminant!r}")
+    return _weights(illuminant)
+
+
+@cache
+def _weights(illuminant: str) -> NDArray[np.float64]:
     import colour
 
     if illuminant not in colour.SDS_ILLUMINANTS:
@@ -75,8 +83,8 @@ def responses(illuminant: str = "D65") -> NDArray[np.float64]:
 
 
 def three_bands(
-    sigma_s: NDArray[np.float64],
-    sigma_t: NDArray[np.float64],
+    sigma_s: ArrayLike,
+    sigma_t: ArrayLike,
     distance: float = 0.0,
     illuminant: str = "D65",
     clip: bool = False,
@@ -85,7 +93,8 @@ def three_bands(
 
     Parameters
     ----------
-    sigma_s, sigma_t : ndarray, (81,)  coefficients at `WAVELENGTHS` [1 / scene unit]
+    sigma_s : array_like, (81,)        scattering coefficient at `WAVELENGTHS` [1 / scene unit]
+    sigma_t : array_like, (81,)        extinction coefficient at `WAVELENGTHS` [1 / scene unit]
     distance : float                   where to match [scene unit]; 0 takes the response-weighted mean
     illuminant : str                   spectrum of the light, as for `responses`
     clip : bool                        whether negative scattering or absorption becomes 0, with a warning that says
@@ -98,22 +107,26 @@ def three_bands(
     Raises
     ------
     ValueError
-        If distance is negative, infinite or NaN; if a channel has no light left there; or if a channel's scattering or
-        absorption is negative and `clip` is not set.
+        If a coefficient is not 81 real numbers, negative, infinite or NaN, or sigma_s exceeds sigma_t; if distance is
+        not one number, negative, infinite or NaN; if the illuminant is unknown; if a channel has no light left at that
+        distance; or if a channel's scattering or absorption is negative and `clip` is not set.
     """
-    if not (np.isfinite(distance) and distance >= 0):
-        raise ValueError(f"distance must be finite and not negative: {distance}")
+    scattering, total = checked_coefficients(WAVELENGTHS, sigma_s, sigma_t)
+    length = real_number("distance", distance)
+    if not (np.isfinite(length) and length >= 0):
+        raise ValueError(f"distance must be finite and not negative: {length}")
     weights = responses(illuminant)
     # (1 - e^{-tau}) / tau: each wavelength's loss over the distance, as a share of what it would be without saturation
-    depth = sigma_t * distance
+    depth = total * length
     kept = np.divide(-np.expm1(-depth), depth, out=np.ones_like(depth), where=depth > 0)
-    scattered = _not_negative("sigma_s", weights @ (sigma_s * kept), clip)
-    absorbed = _not_negative("sigma_t - sigma_s", weights @ ((sigma_t - sigma_s) * kept), clip)
+    scattered = _not_negative("sigma_s", weights @ (scattering * kept), clip)
+    absorbed = _not_negative("sigma_t - sigma_s", weights @ ((total - scattering) * kept), clip)
     lost = scattered + absorbed
-    if np.any(lost * distance >= 1):
-        dark = " and ".join(name for name, value in zip(CHANNELS, lost * distance, strict=True) if value >= 1)
-        raise ValueError(f"distance must be shorter: at {distance} the light that is left has no {dark} in Rec.709")
-    extinction = -np.log1p(-lost * distance) / distance if distance else lost
+    gone = lost * length
+    if np.any(gone >= 1):
+        dark = " and ".join(name for name, value in zip(CHANNELS, gone, strict=True) if value >= 1)
+        raise ValueError(f"distance must be shorter: at {length:g} the light that is left has no {dark} in Rec.709")
+    extinction = lost * np.divide(-np.log1p(-gone), gone, out=np.ones(3), where=gone > 0)
     albedo = np.divide(scattered, lost, out=np.zeros(3), where=lost > 0)
     return Medium(albedo * extinction, extinction)
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.airlight import airlight
+from analytic.inputs import real_array
 from analytic.medium import Medium, transmittance
 from analytic.spectra.bands import LUMINANCE, WAVELENGTHS, responses
 from analytic.spectra.spectral_medium import SpectralMedium
@@ -32,20 +33,27 @@ class ThreeBandError:
 
     @property
     def relative(self) -> NDArray[np.float64]:
-        """(three_band - spectral) / |spectral|, (..., 3)."""
-        return (self.three_band - self.spectral) / np.abs(self.spectral)
+        """(three_band - spectral) / |spectral|, (..., 3).
+
+        NaN where both are 0, as at an infinite distance or where x_a = x_b; inf where the spectral result alone is 0.
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return (self.three_band - self.spectral) / np.abs(self.spectral)
 
     @property
     def delta_e(self) -> NDArray[np.float64]:
         """CIE Delta E 2000 between the two, (...), seen against D65 white of luminance `white`; 1 is just visible.
+
+        NaN where the white is 0: nothing is seen there.
 
         Source: CIE 142:2001, by colour-science.
         """
         import colour
 
         space = colour.RGB_COLOURSPACES["ITU-R BT.709"]
+        white = np.where(self.white == 0, np.nan, self.white)[..., None]
         exact, bands = (
-            colour.XYZ_to_Lab(rgb / self.white[..., None] @ space.matrix_RGB_to_XYZ.T, space.whitepoint)
+            colour.XYZ_to_Lab(rgb / white @ space.matrix_RGB_to_XYZ.T, space.whitepoint)
             for rgb in (self.spectral, self.three_band)
         )
         return np.asarray(colour.delta_E(exact, bands, method="CIE 2000"), dtype=np.float64)
@@ -70,9 +78,10 @@ def transmittance_error(
     Raises
     ------
     ValueError
-        If distance is negative or NaN, or the illuminant unknown.
+        If distance is negative, NaN or no real number, the medium not RGB, or the illuminant unknown.
     """
-    length = np.asarray(distance, dtype=np.float64)[..., None]
+    _require(spectral, medium)
+    length = real_array("distance", distance)[..., None]
     exact = transmittance(spectral.sigma_t, length) @ responses(illuminant).T
     return ThreeBandError(exact, transmittance(medium.sigma_t, length), np.ones(exact.shape[:-1]))
 
@@ -104,13 +113,24 @@ def airlight_error(
     Raises
     ------
     ValueError
-        If h, x_a or x_b is one that `analytic.airlight` refuses, if the ray meets the light, or the illuminant is
-        unknown.
+        If h, x_a or x_b is one that `analytic.airlight` refuses, if the ray meets the light, the medium is not RGB, or
+        the illuminant is unknown.
     """
+    _require(spectral, medium)
+    height, start, end = (real_array(name, value) for name, value in (("h", h), ("x_a", x_a), ("x_b", x_b)))
     phases = spectral.phases * (WAVELENGTHS.size // len(spectral.phases))
     coefficients = zip(spectral.sigma_s, spectral.sigma_t, phases, strict=True)
-    by_wavelength = np.stack([airlight(h, x_a, x_b, Medium(s, t), phase) for s, t, phase in coefficients], axis=-1)
+    by_wavelength = np.stack(
+        [airlight(height, start, end, Medium(s, t), phase) for s, t, phase in coefficients], axis=-1
+    )
     if not np.all(np.isfinite(by_wavelength)):
         raise ValueError("h must not be 0 where the ray meets the light: it is infinitely bright there")
     exact = by_wavelength @ responses(illuminant).T
-    return ThreeBandError(exact, airlight(h, x_a, x_b, medium, spectral.phase(illuminant)), exact @ LUMINANCE)
+    return ThreeBandError(exact, airlight(height, start, end, medium, spectral.phase(illuminant)), exact @ LUMINANCE)
+
+
+def _require(spectral: SpectralMedium, medium: Medium) -> None:
+    if not isinstance(spectral, SpectralMedium):
+        raise ValueError(f"spectral must be a SpectralMedium, not a {type(spectral).__name__}")
+    if not isinstance(medium, Medium) or medium.sigma_t.shape != (3,):
+        raise ValueError("medium must be an RGB analytic.Medium")

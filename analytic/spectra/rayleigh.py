@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from analytic.phase import phase
 from analytic.spectra.bands import WAVELENGTHS
+from analytic.spectra.coefficients import positive_number
 from analytic.spectra.spectral_medium import SpectralMedium
 
 __all__ = ["rayleigh_air"]
@@ -40,16 +39,17 @@ def rayleigh_air(
     Raises
     ------
     ValueError
-        If an argument is not positive and finite.
+        If an argument is not one number, positive and finite.
 
     Source: Bodhaine, Wood, Dutton and Slusser 1999, by colour-science.
     """
-    for name, value in (("metres_per_unit", metres_per_unit), ("temperature", temperature), ("pressure", pressure)):
-        if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"{name} must be positive and finite: {value}")
+    length, kelvin, pascal = (
+        positive_number(name, value)
+        for name, value in (("metres_per_unit", metres_per_unit), ("temperature", temperature), ("pressure", pressure))
+    )
     from colour.phenomena.rayleigh import molecular_density, scattering_cross_section
 
     cross_section = scattering_cross_section(WAVELENGTHS * NM_TO_CM)  # [cm^2]
-    molecules = molecular_density(temperature) * pressure / STANDARD_PRESSURE  # [1/cm^3]
-    sigma = cross_section * molecules * PER_CM_TO_PER_M * metres_per_unit
+    molecules = molecular_density(kelvin) * pascal / STANDARD_PRESSURE  # [1/cm^3]
+    sigma = cross_section * molecules * PER_CM_TO_PER_M * length
     return SpectralMedium(sigma, sigma, phase("rayleigh"))

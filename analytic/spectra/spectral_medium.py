@@ -12,6 +12,7 @@ from analytic.medium import Medium
 from analytic.phase import Phase, phase
 from analytic.phases.tabulated import Tabulated
 from analytic.spectra.bands import LUMINANCE, WAVELENGTHS, responses, three_bands
+from analytic.spectra.coefficients import checked_coefficients
 
 __all__ = ["SpectralMedium"]
 
@@ -29,8 +30,8 @@ class SpectralMedium:
     Raises
     ------
     ValueError
-        If a coefficient is not 81 numbers, negative, infinite or NaN, if sigma_s exceeds sigma_t, or if the phase
-        functions are neither one nor 81 tables of one length.
+        If a coefficient is not 81 real numbers, negative, infinite or NaN, if sigma_s exceeds sigma_t, or if the phase
+        functions are not made by `analytic.phase`, or neither one nor 81 tables of one length.
     """
 
     sigma_s: NDArray[np.float64]
@@ -38,11 +39,11 @@ class SpectralMedium:
     phases: tuple[Phase, ...]
 
     def __init__(self, sigma_s: ArrayLike, sigma_t: ArrayLike, phases: Phase | Sequence[Phase]) -> None:
-        scattering, extinction = _spectrum("sigma_s", sigma_s), _spectrum("sigma_t", sigma_t)
-        if np.any(scattering > extinction):
-            worst = WAVELENGTHS[np.argmax(scattering - extinction)]
-            raise ValueError(f"sigma_s must not exceed sigma_t, as it does at {worst:g} nm")
+        scattering, extinction = checked_coefficients(WAVELENGTHS, sigma_s, sigma_t)
         functions = tuple(phases) if isinstance(phases, Sequence) else (phases,)
+        strangers = [type(function).__name__ for function in functions if not isinstance(function, Phase)]
+        if strangers:
+            raise ValueError(f"phases must be made by analytic.phase, not be a {strangers[0]}")
         if len(functions) != 1:
             lengths = {len(function.values) if isinstance(function, Tabulated) else 0 for function in functions}
             if len(functions) != WAVELENGTHS.size or len(lengths) != 1 or 0 in lengths:
@@ -66,13 +67,3 @@ class SpectralMedium:
         weights = (LUMINANCE @ responses(illuminant)) * self.sigma_s
         tables = np.array([function.values for function in self.phases if isinstance(function, Tabulated)])
         return phase("tabulated", values=tuple((weights @ tables).tolist()))
-
-
-def _spectrum(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    array = np.array(value, dtype=np.float64)
-    if array.shape != WAVELENGTHS.shape:
-        raise ValueError(f"{name} must be {WAVELENGTHS.size} numbers, not of shape {array.shape}")
-    if not np.all(np.isfinite(array)) or np.any(array < 0):
-        raise ValueError(f"{name} must be finite and not negative")
-    array.setflags(write=False)
-    return array

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from analytic import Medium, airlight, phase, spectra, transmittance
-from analytic.spectra.bands import LUMINANCE, WAVELENGTHS
+from analytic.spectra.bands import WAVELENGTHS
 
 AIR = spectra.rayleigh_air(metres_per_unit=1000)
 ISOTROPIC = phase("isotropic")
@@ -69,9 +69,39 @@ def test_the_spectral_side_is_what_colour_science_integrates_in_steps_of_1_nm(di
     np.testing.assert_allclose(found, rgb(transmittance(sigma, distance)) / rgb(np.ones_like(fine)), atol=1e-4)
 
 
-def test_an_illuminant_that_nobody_knows_is_refused():
+@pytest.mark.parametrize("illuminant", ["D6500", [], None, 65, ["D65"]])
+def test_an_illuminant_that_nobody_knows_is_refused(illuminant):
     with pytest.raises(ValueError, match="illuminant must be a name"):
-        spectra.responses("D6500")
+        spectra.responses(illuminant)
+    with pytest.raises(ValueError, match="illuminant must be a name"):
+        AIR.medium(illuminant=illuminant)
+
+
+def incandescent():
+    """Weights of the channels under illuminant A: Planck's formula of ISO 11664-2, the primaries of BT.709."""
+    exponent = 1.435e7 / 2848
+    light = (560 / WAVELENGTHS) ** 5 * np.expm1(exponent / 560) / np.expm1(exponent / WAVELENGTHS)
+    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"][WAVELENGTHS]
+    x, y = np.array([[0.64, 0.30, 0.15], [0.33, 0.60, 0.06]])
+    primaries = np.array([x / y, np.ones(3), (1 - x - y) / y])
+    white = np.array([0.3127, 0.3290, 0.3583]) / 0.3290
+    matrix = np.linalg.inv(primaries * np.linalg.solve(primaries, white))
+    weights = matrix @ (observer.T * light)
+    return weights / weights.sum(axis=1, keepdims=True)
+
+
+def test_each_function_takes_the_light_that_it_is_given():
+    weights = incandescent()
+    mean = weights @ AIR.sigma_t
+    # measured: 8e-7; under D65 the mean differs by 4 to 15 %
+    np.testing.assert_allclose(spectra.three_bands(AIR.sigma_s, AIR.sigma_t, illuminant="A").sigma_t, mean, rtol=5e-6)
+    np.testing.assert_allclose(AIR.medium(illuminant="A").sigma_s, mean, rtol=5e-6)
+    assert np.abs(AIR.medium().sigma_t / mean - 1).max() > 0.03
+    error = spectra.transmittance_error(AIR, AIR.medium(), 50.0, "A")
+    np.testing.assert_allclose(error.spectral, weights @ np.exp(-50 * AIR.sigma_t), rtol=5e-6)
+    each = [float(airlight(1.0, -30.0, 20.0, Medium(s, s), phase("rayleigh"))) for s in AIR.sigma_s]
+    error = spectra.airlight_error(AIR, AIR.medium(), 1.0, -30.0, 20.0, "A")
+    np.testing.assert_allclose(error.spectral, weights @ each, rtol=5e-6)
 
 
 # --- three coefficients
@@ -137,73 +167,49 @@ def test_a_distance_that_leaves_no_light_in_a_channel_is_refused():
         AIR.medium(distance=400)
 
 
-@pytest.mark.parametrize("distance", [-1.0, np.nan, np.inf])
-def test_a_distance_that_is_none_is_refused(distance):
-    with pytest.raises(ValueError, match="distance must be finite"):
+@pytest.mark.parametrize(
+    ("distance", "message"),
+    [
+        (-1.0, "finite"),
+        (np.nan, "finite"),
+        (np.inf, "finite"),
+        ("a", "real numbers"),
+        (None, "real numbers"),
+        (1j, "real numbers"),
+        ([1, 2], "one number"),
+    ],
+)
+def test_a_distance_that_is_none_is_refused(distance, message):
+    with pytest.raises(ValueError, match=f"distance must be {message}"):
         AIR.medium(distance=distance)
 
 
-# --- what they get wrong
+@pytest.mark.parametrize("distance", [5e-324, 1e-310])
+def test_a_distance_that_is_hardly_one_takes_the_mean(distance):
+    np.testing.assert_allclose(AIR.medium(distance=distance).sigma_t, AIR.medium().sigma_t, rtol=1e-14)
 
 
-def test_the_mean_errs_in_the_second_order_by_half_the_variance():
-    error = spectra.transmittance_error(AIR, AIR.medium(), 0.01)
-    weights, mean = spectra.responses(), AIR.medium().sigma_t
-    variance = np.sum(weights * (AIR.sigma_t - mean[:, None]) ** 2, axis=1)
-    # measured: 8e-4, the third order
-    np.testing.assert_allclose(error.relative / 0.01**2, -variance / 2, rtol=2e-3)
+@pytest.mark.parametrize(
+    ("sigma_s", "sigma_t", "message"),
+    [
+        (flat(2.0), flat(), "sigma_s must not exceed sigma_t, as it does at 380 nm"),
+        (-flat(), flat(), "sigma_s must be finite and not negative"),
+        (flat(), flat(np.inf), "sigma_t must be finite and not negative"),
+        (flat() * 1j, flat(), "sigma_s must be real numbers"),
+        (flat(), flat() * (1 + 0j), "sigma_t must be real numbers"),
+        (np.ones(3), np.ones(3), "sigma_s must be 81 numbers"),
+        (0.5, flat(), "sigma_s must be 81 numbers"),
+        (None, flat(), "sigma_s must be real numbers"),
+    ],
+)
+def test_bands_of_spectra_that_cannot_be_are_refused(sigma_s, sigma_t, message):
+    with pytest.raises(ValueError, match=message):
+        spectra.three_bands(sigma_s, sigma_t)
 
 
-def test_thin_airlight_is_right_to_the_first_order():
-    error = [
-        np.abs(spectra.airlight_error(AIR, AIR.medium(), scale, -2 * scale, 3 * scale).relative).max()
-        for scale in (1e-3, 1e-2)
-    ]
-    assert error[1] < 1e-3
-    # ten times the depth, ten times the error: measured 9.992
-    assert error[1] / error[0] == pytest.approx(10, rel=2e-3)
-
-
-def test_airlight_is_summed_over_wavelengths_that_keep_their_own_phase_function():
-    tables = [phase("tabulated", values=(1.0, 1.0 + number / 80, 2.0)) for number in range(WAVELENGTHS.size)]
-    medium = spectra.SpectralMedium(bell(600, 80), flat(1.5), tables)
-    error = spectra.airlight_error(medium, medium.medium(), 1.0, -1.0, 2.0)
-    each = [
-        float(airlight(1.0, -1.0, 2.0, Medium(s, t), p))
-        for s, t, p in zip(medium.sigma_s, medium.sigma_t, tables, strict=True)
-    ]
-    np.testing.assert_allclose(error.spectral, spectra.responses() @ each, rtol=1e-14)
-    assert error.white == pytest.approx(float(LUMINANCE @ error.spectral), rel=1e-14)
-
-
-def test_the_one_phase_function_keeps_the_luminance_of_a_thin_medium():
-    tables = [phase("tabulated", values=(1.0, 2.0 - number / 80, 3.0)) for number in range(WAVELENGTHS.size)]
-    medium = spectra.SpectralMedium(1e-6 * bell(550, 60), 1e-6 * flat(), tables)
-    error = spectra.airlight_error(medium, medium.medium(), 1.0, [-1.0, -1.0, 0.5], [-0.5, 2.0, 2.0])
-    luminance = [rgb @ LUMINANCE for rgb in (error.spectral, error.three_band)]
-    # measured: 4e-16, where the channels differ by up to 3.5 %
-    np.testing.assert_allclose(luminance[1], luminance[0], rtol=1e-12)
-    assert np.abs(error.relative).max() > 0.01
-
-
-@pytest.mark.parametrize("white", [1.0, 4.0])
-def test_delta_e_of_a_grey_is_the_formula_of_cie_142(white):
-    pair = spectra.ThreeBandError(np.full((1, 3), 0.5), np.full((1, 3), 1.0), np.array([white]))
-    dark, light = (116 * (luminance / white) ** (1 / 3) - 16 for luminance in (0.5, 1.0))
-    middle = ((dark + light) / 2 - 50) ** 2
-    expected = (light - dark) / (1 + 0.015 * middle / np.sqrt(20 + middle))
-    # measured: 7e-16
-    assert pair.delta_e[0] == pytest.approx(expected, rel=1e-12)
-
-
-def test_a_negative_channel_has_a_relative_error_of_the_right_sign():
-    pair = spectra.ThreeBandError(np.array([0.2, 0.1, -0.1]), np.array([0.1, 0.2, 0.1]), np.array(1.0))
-    np.testing.assert_allclose(pair.relative, [-0.5, 1.0, 2.0])
-
-
-def test_a_ray_through_the_light_is_refused():
-    with pytest.raises(ValueError, match="h must not be 0"):
-        spectra.airlight_error(AIR, AIR.medium(), 0.0, -1.0, 1.0)
+def test_bands_of_lists_are_those_of_arrays():
+    found = spectra.three_bands(AIR.sigma_s.tolist(), AIR.sigma_t.tolist())
+    np.testing.assert_array_equal(found.sigma_t, AIR.medium().sigma_t)
 
 
 # --- air
@@ -230,9 +236,13 @@ def test_air_scatters_by_how_much_of_it_there_is():
 
 
 @pytest.mark.parametrize("name", ["metres_per_unit", "temperature", "pressure"])
-@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
-def test_air_that_cannot_be_is_refused(name, value):
-    with pytest.raises(ValueError, match=f"{name} must be positive"):
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [(value, "positive") for value in (0.0, -1.0, np.nan, np.inf)]
+    + [("a", "real numbers"), (None, "real numbers"), (1j, "real numbers"), ([288, 300], "one number")],
+)
+def test_air_that_cannot_be_is_refused(name, value, message):
+    with pytest.raises(ValueError, match=f"{name} must be {message}"):
         spectra.rayleigh_air(**{name: value})
 
 
@@ -255,6 +265,11 @@ def test_a_table_is_interpolated_linearly():
         ([], [], [], "wavelengths must reach from 380 to 780 nm, and are empty"),
         ([400, 780], [0, 0], [1, 1], "wavelengths must reach from 380 to 780 nm, not from 400 to 780 nm"),
         ([380, 700], [0, 0], [1, 1], "wavelengths must reach"),
+        ("a", [0, 0], [1, 1], "wavelengths must be real numbers"),
+        ([380, 780 + 1j], [0, 0], [1, 1], "wavelengths must be real numbers"),
+        ([380, 780], [1j, 1j], [1, 1], "sigma_s must be real numbers"),
+        ([380, 780], [0, 0], [1 + 0j, 1], "sigma_t must be real numbers"),
+        ([380, 780], [0, 0], None, "sigma_t must be real numbers"),
         ([380, 780], [0, 0, 0], [1, 1], "sigma_s must be 2 numbers"),
         ([380, 780], [0, 0], [1], "sigma_t must be 2 numbers"),
         ([380, 780], [0, np.nan], [1, 1], "sigma_s must be finite"),
@@ -275,6 +290,13 @@ def test_a_table_that_cannot_be_is_refused(wavelengths, sigma_s, sigma_t, messag
         (flat(0), flat(np.inf), ISOTROPIC, "sigma_t must be finite"),
         (flat(-1), flat(), ISOTROPIC, "sigma_s must be finite and not negative"),
         (flat(2), flat(), ISOTROPIC, "sigma_s must not exceed sigma_t, as it does at 380 nm"),
+        (flat() * 1j, flat(), ISOTROPIC, "sigma_s must be real numbers"),
+        (flat(), None, ISOTROPIC, "sigma_t must be real numbers"),
+        (flat(), flat(), "h", "phases must be made by analytic.phase, not be a str"),
+        (flat(), flat(), None, "phases must be made by analytic.phase, not be a NoneType"),
+        (flat(), flat(), np.array([1]), "phases must be made by analytic.phase, not be a ndarray"),
+        (flat(), flat(), [phase("tabulated", values=(1, 1))] * 80 + [1], "phases must be made .* not be a int"),
+        (flat(), flat(), [], "phases must be one, or 81"),
         (flat(), flat(), [phase("tabulated", values=(1, 1))] * 80, "phases must be one, or 81 tables"),
         (flat(), flat(), [phase("hg", g=0.1)] * 81, "phases must be one, or 81 tables"),
         (flat(), flat(), [phase("tabulated", values=(1,) * n) for n in [3] * 80 + [2]], "phases must be one, or 81"),
@@ -283,3 +305,9 @@ def test_a_table_that_cannot_be_is_refused(wavelengths, sigma_s, sigma_t, messag
 def test_a_medium_that_cannot_be_is_refused(sigma_s, sigma_t, phases, message):
     with pytest.raises(ValueError, match=message):
         spectra.SpectralMedium(sigma_s, sigma_t, phases)
+
+
+@pytest.mark.parametrize("stranger", [None, "isotropic", 1.0])
+def test_a_table_takes_no_stranger_for_a_phase_function(stranger):
+    with pytest.raises(ValueError, match="phase must be made by"):
+        spectra.tabulated([380, 780], [0, 0], [1, 1], stranger)
