@@ -30,13 +30,16 @@ max p e^{-H v_a (e^{t_c} - 1)} int_{t_c} dt / cosh s, and 1 / cosh s < 2 e^{-s}.
 
 **Rounding.** Let eps = 2^-precision and T the largest t. A node t is off by less than 4 T eps, so v = v_a e^t, v_a a
 sum of positive terms or one over such a sum, by less than (8 + 4 T) eps relative. p / cosh s is made from v by at most
-40 operations of positive terms (of a table, relative to the sum of their absolute values) and answers to an error of v
-with a factor of at most 5: in all less than (80 + 20 T) eps. The exponent H v_a (e^t - 1), which may cancel, is off by
-less than (16 + 8 T) H v eps absolutely, and that of e^{-sigma_t d_a} by 4 sigma_t d_a eps. N terms in a row add N eps.
+40 operations of positive terms and answers to an error of v with a factor of at most 5: in all less than
+(80 + 20 T) eps. A table's line alone has terms of both signs, in its two coefficients and between them; there the same
+is true relative to its `size`, in which every subtraction is a sum. (Its M is a bound of that size, too, so the
+rounding of the coefficients does not make it false.) The exponent H v_a (e^t - 1), which may cancel, is off by less
+than (16 + 8 T) H v eps absolutely, and that of e^{-sigma_t d_a} by 4 sigma_t d_a eps. N terms in a row add N eps.
 So the sum is off by less than 100 (1 + T) (1 + H v + sigma_t d_a) eps + N eps of the sum of the terms' sizes. An end or
 a kink is off by less than 8 eps (1 + |s|), times the integrand there, which is at most the M of the panel beside it.
-The precision has as many guard digits as log10 of the optical depth and of 1 / t_b, and more with every trial that was
-not good enough: the bound that is given is what was met.
+The precision has as many guard digits as log10 of the optical depth and of 1 / t_b. Where truncation or rounding is
+still too large for the value that was found, panels become finer or digits more by what was lacking: the bound that is
+given is what was met.
 """
 
 from __future__ import annotations

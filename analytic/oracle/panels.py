@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from mpmath import mpf
+from mpmath import mp, mpf
 
 from analytic.oracle.integrands import Integrand
 from analytic.oracle.phases import Piece
@@ -39,11 +39,11 @@ def log_estimate(integrand: Integrand, pieces: list[tuple[Any, Any, Piece]]) -> 
         reach = min(float(high - low), abs(float(integrand.start)) + 40)
         if rate:
             reach = min(reach, math.log1p(40 / rate))
+        log_width = min(_log(high - low), 0.0, -math.log(rate) if rate else 0.0)
         for k in range(40):
             t = start + reach * (k + 0.5) / 40
-            width = min(reach, 1.0, 1 / rate if rate else 1.0)
             height = integrand.log_bound(t, t, 0.0, piece) + _log_exponential(integrand, t, 0.0)
-            best = max(best, height + math.log(width))
+            best = max(best, height + log_width)
     return best - 2
 
 
@@ -80,7 +80,7 @@ def panels(
     waiting = [(low, high, 0)] if low < high else []
     while waiting:
         start, end, halvings = waiting.pop()
-        log_error, log_largest = _log_error(integrand, piece, float((start + end) / 2), float((end - start) / 2), nodes)
+        log_error, log_largest = _log_error(integrand, piece, float((start + end) / 2), (end - start) / 2, nodes)
         if log_error < log_goal - math.log(MANY_PANELS) or halvings == DEEPEST_HALVING:
             yield start, end, log_error, log_largest
         else:
@@ -88,17 +88,23 @@ def panels(
             waiting += [(middle, end, halvings + 1), (start, middle, halvings + 1)]
 
 
-def _log_error(integrand: Integrand, piece: Piece, middle: float, half: float, nodes: int) -> tuple[float, float]:
+def _log_error(integrand: Integrand, piece: Piece, middle: float, half: Any, nodes: int) -> tuple[float, float]:
     """Logarithms of (half) (64 / 15) M rho^(-2 nodes) / (1 - rho^-2), least over the ellipses, and of the least M.
 
     The least M, of the narrowest ellipse, is close to the largest value in the panel; a wide one's may be e^100 of it.
     """
     best = narrowest = math.inf
+    # a panel may be thinner than any float64
+    width, log_width = float(half), _log(half)
     for rho in SUMS_OF_SEMIAXES:
-        a, b = half * (rho + 1 / rho) / 2, half * (rho - 1 / rho) / 2
+        a, b = width * (rho + 1 / rho) / 2, width * (rho - 1 / rho) / 2
         if b > LARGEST_B:
             break
         largest = integrand.log_bound(middle - a, middle + a, b, piece) + _log_exponential(integrand, middle - a, b)
-        error = math.log(half * 64 / 15) + largest - 2 * nodes * math.log(rho) - math.log1p(-(rho**-2))
+        error = log_width + math.log(64 / 15) + largest - 2 * nodes * math.log(rho) - math.log1p(-(rho**-2))
         best, narrowest = min(best, error), min(narrowest, largest)
     return best, narrowest
+
+
+def _log(length: Any) -> float:
+    return float(mp.log(length))

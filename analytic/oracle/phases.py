@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -127,21 +128,34 @@ class _CornetteShanks(Positive):
 
 
 class _Line:
-    """A straight line in cos theta = C - S, from what it would be at cos theta = +1 and at -1."""
+    """A straight line in cos theta = C - S, from its values at both ends of a table's step.
 
-    def __init__(self, ahead: Any, behind: Any) -> None:
-        self.ahead, self.behind = ahead, behind
+    With C + S = 1 the mean of both, low (i + 1 - last C) + high (last C - i), has the coefficients
+
+        C: high (last - i) - low (last - i - 1),    S: low (i + 1) - high i,
+
+    which are what the line would be at cos theta = +1 and at -1: at the ends of the table, the table's own values.
+    """
+
+    def __init__(self, low: Any, high: Any, i: int, last: int) -> None:
+        self.ahead, self.behind = high * (last - i) - low * (last - i - 1), low * (i + 1) - high * i
+        # what the roundings of the coefficients, too, are relative to
+        self.size_ahead, self.size_behind = high * (last - i) + low * (last - i - 1), low * (i + 1) + high * i
 
     def value(self, cos2: Any, sin2: Any) -> Any:
         return self.ahead * cos2 + self.behind * sin2
 
     def size(self, cos2: Any, sin2: Any) -> Any:
-        return abs(self.ahead) * cos2 + abs(self.behind) * sin2
+        return self.size_ahead * cos2 + self.size_behind * sin2
 
     def bound(self, low: float, high: float, b: float) -> float:
-        # |C| = 1 / |1 + e^{2 s}| <= 1 / ((1 + e^{2 x}) cos b), and S alike
-        ahead, behind = abs(float(self.ahead)), abs(float(self.behind))
-        return (ahead * _share(-2 * low) + behind * _share(2 * high)) / math.cos(b)
+        # |C| = 1 / |1 + e^{2 s}| <= 1 / ((1 + e^{2 x}) cos b), and S alike; of the size, which is not smaller and of
+        # which the roundings of the coefficients are a tiny part, so that it holds with and without them
+        ahead, behind = float(self.size_ahead), float(self.size_behind)
+        if not (ahead or behind):
+            return 0.0
+        # products that underflow must not become a bound of 0
+        return max(ahead * _share(-2 * low) + behind * _share(2 * high), sys.float_info.min) / math.cos(b)
 
 
 def _share(exponent: float) -> float:
@@ -162,9 +176,8 @@ def _table(values: Sequence[float]) -> ExactPhase:
     scale = last / (2 * mp.pi * mp.fsum(low + high for low, high in itertools.pairwise(table)))
     pieces, kinks = [], []
     for i in range(last - 1, -1, -1):
-        low, high = scale * table[i], scale * table[i + 1]
-        # the line through (2 i / last - 1, low) and (2 (i + 1) / last - 1, high), carried on to +1 and to -1
-        pieces.append(_Line(low + (high - low) * (last - i), low - (high - low) * i))
+        # from cos theta = 2 i / last - 1 to 2 (i + 1) / last - 1
+        pieces.append(_Line(scale * table[i], scale * table[i + 1], i, last))
         if i:
             # 1 - cos theta = 2 (last - i) / last and 1 + cos theta = 2 i / last
             kinks.append(mp.log(mpf(last - i) / i) / 2)

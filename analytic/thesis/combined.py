@@ -12,7 +12,7 @@ from typing import Any
 from mpmath import mp, mpf
 
 from analytic.thesis.exponential_integral import ExponentialIntegral, ei
-from analytic.thesis.first_formulation import I_n, closed_form_in_v, i_0, i_1, prefactor_repaired
+from analytic.thesis.first_formulation import closed_form_in_v, i_0, i_1, prefactor_repaired
 from analytic.thesis.second_formulation import J_n, closed_form_in_w_repaired, j_0, j_1
 from analytic.thesis.segment import Segment
 
@@ -75,9 +75,3 @@ def combined_airlight(
     behind = closed_form_in_w_repaired(segment.H, mpf(-1), segment.w(segment.x_b), d_n, J)
     before = closed_form_in_v(segment.H, mpf(1), segment.v(segment.x_a), c_n)
     return prefactor_repaired(segment) * 2 * (behind - before)
-
-
-def isotropic_airlight_of_two(segment: Segment) -> Any:
-    """L_m / (I kappa_s) of the isotropic phase function: in J_0 - I_0 the terms of v_h = 1 cancel, by Eq. 32."""
-    difference = I_n(0, -segment.H, segment.v(segment.x_a), segment.v(segment.x_b))
-    return prefactor_repaired(segment) * 2 / (4 * mp.pi) * difference

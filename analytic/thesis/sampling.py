@@ -99,9 +99,9 @@ def algorithm_4_2_printed(ray: Ray, cleared: Any) -> list[Interval]:
 
 
 def algorithm_4_2_chained(ray: Ray, cleared: Any) -> list[Interval]:
-    """The same in a language that reads "front < A < final" as (front < A) < final, a truth value against a distance.
+    """The same in C or HLSL, which read "front < A < final" as (front < A) < final, a truth value against a distance.
 
-    The truth value is 0 or 1, so every sample of the ray is in the region where final > 1.
+    GLSL refuses it. The truth value is 0 or 1, so every sample of the ray is in the region where final > 1.
     """
     front, final = (cleared, cleared) if ray.front is None else (ray.front, ray.final)
     if not front < ray.surface:

@@ -18,14 +18,17 @@ PAGE = """# {title}
 
 {made}
 
-Each equation of the thesis is in code twice, as printed and repaired (`analytic/thesis/`, one file per section), and is
-compared with a truth that does not use it: particles and thin slabs for chapter 3, a lamp of finite size for Eqs. 13 to
-15, and for the airlight an oracle that proves a bound of its own error (`analytic/oracle/`). A residual is the largest
-relative error over the cases, 1 where everything is lost; above {limit:g} an equation is called wrong. Where a print
-can be read in several ways, the best reading counts and the finding tells the others. How large the residual of a wrong
-equation is depends on the cases (h from 0.03 to 10, extinction from 0.01 to 4, the light's projection before, inside
-and behind the segment); that it is wrong does not. [derivations.md](derivations.md) derives each repair,
-[audit.json](audit.json) holds the same numbers in full. A residual beyond float64 is given as the largest float.
+Each equation of the thesis is in code as printed and, where that is wrong, repaired (`analytic/thesis/`, one file per
+section). It is compared with a truth that does not use it: particles and thin slabs for chapter 3 and Eq. 13, a lamp of
+finite size for Eqs. 14 and 15, and for the airlight an oracle that proves a bound of its own error
+(`analytic/oracle/`). Eqs. 31 and 32 alone relate the thesis's own i and j, which Eqs. 20, 23 and 26 hold against the
+oracle. Eq. 29's exponent, the kappa_i of Eqs. 22 and 24 and the capital I of Eq. 23 are read from an extracted text of
+the thesis, not from its pages. A residual is the largest relative error over the cases, 1 where everything is lost;
+above {limit:g} an equation is called wrong. Where a print can be read in several ways, the best reading counts and the
+finding tells the others. How large the residual of a wrong equation is depends on the cases (h from 0.03 to 10,
+extinction from 0.01 to 4, the light's projection before, inside and behind the segment); that it is wrong does not.
+[derivations.md](derivations.md) derives each repair, [audit.json](audit.json) holds the same numbers in full. A
+residual beyond float64 is given as the largest float.
 
 {right} are right as printed, {wrong} are wrong.
 

@@ -66,6 +66,10 @@ def test_the_page(some, tmp_path, capsys):
     page = (folder / "README.md").read_text()
     assert "    airlight audit --out results/audit\n" in page
     assert "2 are right as printed, 4 are wrong." in page
+    # what was read, and which two equations are held against the thesis itself
+    words = " ".join(page.split())
+    assert "are read from an extracted text of the thesis" in words
+    assert "Eqs. 31 and 32 alone relate the thesis's own i and j" in words
     rows = [line for line in page.splitlines() if line.startswith("| ")][1:]
     assert [row.split(" | ")[0].lstrip("| ") for row in rows] == SOME
     # each has five bars, whatever a verdict holds

@@ -39,7 +39,8 @@ def tabulated(values):
     def function(cosine):
         position = (cosine + 1) / 2 * last
         i = max(0, min(int(position), last - 1))
-        return (table[i] + (table[i + 1] - table[i]) * (position - i)) / (2 * mpmath.pi * area)
+        # a mean of both: a difference of them would be rounded relative to the larger one
+        return (table[i] * (i + 1 - position) + table[i + 1] * (position - i)) / (2 * mpmath.pi * area)
 
     function.nodes = [2 * mpmath.mpf(i) / last - 1 for i in range(1, last)]
     return function

@@ -17,7 +17,7 @@ from analytic.thesis.segment import Segment
 
 __all__ = ["CHECKS", "C_N", "D_N"]
 
-PREFACTOR = "the prefactor is e^{kappa_t (x_a - x_h)}"
+PREFACTOR = "the prefactor is e^(kappa_t (x_a - x_h))"
 # a phase function that *is* a polynomial in v, or in w = -1 / v: the algebra is judged, and nothing is cut off.
 # Six terms, so that both parities of n and both signs of (-1)^{n % 4 / 2} occur beside sums of one to three terms.
 C_N = tuple(mpf(1) / k for k in (8, 16, 32, 40, 48, 64))
@@ -210,7 +210,7 @@ def equation_29() -> Entry:
         f"e^(H/w). With e^(H/w) w^(j+1) {shown(repaired)} is left; the prefactor, e^(kappa_t (x_a - x_h)), is right "
         f"here. Measured with a polynomial of {len(D_N)} terms in w. {in_short()}",
         repaired,
-        "w^{j+1} stands beside e^{H/w}, not in its exponent",
+        "w^(j+1) stands beside e^(H/w), not in its exponent",
     )
 
 

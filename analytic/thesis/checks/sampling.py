@@ -92,9 +92,11 @@ def algorithm_4_1() -> Entry:
         f"As printed the loop runs while the sample is outside the region, so it is never entered: the error is "
         f"{_listed(printed)}. With the loop's test mended: {_listed(mended)}, because startPos has no value if the "
         f"first sample is lit, the last interval is not stored, and intervals are taken from the first lit to the "
-        f"first dark sample, half a step late ({shown(shift)} of the island with {STEPS} steps). Repaired, "
-        f"{shown(max(repaired.values()))} is left where light changes halfway between samples; a gap that no number of "
-        f"steps meets keeps {odd} steps.",
+        f"first dark sample, half a step late ({shown(shift)} of the island with {STEPS} steps). The thesis's words "
+        f"make endPos the final lit sample; its code stores the first dark one, and the code is what was run. "
+        f"Repaired, the algorithm adds {shown(max(repaired.values()))} of its own: light changes halfway between two "
+        f"samples here, which is where the repair puts an end. The error of sampling is no part of that and stays: "
+        f"{odd} steps for a gap that no number of steps meets.",
         max(repaired.values()),
         "the loop's test, an unset startPos, a last interval that is lost, half a step",
     )
@@ -106,6 +108,7 @@ RAYS: dict[str, Ray] = {
     "lit inside": Ray(mpf(2), mpf(8), FAR, False, [(mpf(0), mpf(2)), (mpf(4), mpf(5)), (mpf(8), FAR)]),
     "no polygon": Ray(None, None, FAR, False, [(mpf(0), FAR)]),
     "the eye in a shadow": Ray(mpf(5), mpf(5), FAR, True, [(mpf(5), FAR)]),
+    "the eye inside without a polygon": Ray(None, None, FAR, True, []),
     "final behind the surface": Ray(mpf(3), mpf(12), FAR, False, [(mpf(0), mpf(3))]),
     "surface before front": Ray(mpf(5), mpf(8), mpf(4), False, [(mpf(0), mpf(4))]),
 }
@@ -125,9 +128,9 @@ def algorithm_4_2() -> Entry:
         "Alg. 4.2",
         min(max(printed.values()), max(chained.values())),
         f"Read as front < A and A < final, and with the distances of a pixel without a polygon infinite: "
-        f"{_listed(printed)}; with those 0, no polygon {shown(cleared_to_0['no polygon'])}. Read as a shading language "
-        f"chains comparisons, (front < A) < final: {_listed(chained)}. Repaired, with front = 0 inside a volume and "
-        f"the region ended by the surface, {shown(max(repaired.values()))} is left.",
+        f"{_listed(printed)}; with those 0, no polygon {shown(cleared_to_0['no polygon'])}. Read as C and HLSL read "
+        f"it, (front < A) < final, a truth value against a distance (GLSL refuses it): {_listed(chained)}. Repaired, "
+        f"with front = 0 inside a volume and the region ended by the surface, {shown(max(repaired.values()))} is left.",
         max(repaired.values()),
         "no case for the eye inside a shadow volume or for a final polygon behind the surface",
     )
