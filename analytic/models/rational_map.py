@@ -21,7 +21,8 @@ from analytic.phases.tabulated import Tabulated
 
 __all__ = ["RationalMap", "RationalRule", "lobe_ratio"]
 
-DEPTH_SHARE = 0.02  # needs the fewest nodes among 0.02, 0.05 ... 0.8
+# needs the fewest nodes among 0.01, 0.02 and 0.04, with and without the ratio of `difficulty`, or the root of that
+DEPTH_SHARE = 0.01
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class RationalMap:
     span : ndarray, (n,)       v_b - v_a, cut at clip / H
     optical_h : ndarray, (n,)  H
     q : float or ndarray, (n,)  scale
-    x_a : ndarray, (n,)        X at v_a
+    x_a, x_b : ndarray, (n,)   X at both ends
     dy : ndarray, (n,)         Y_a - Y_b
     """
 
@@ -60,6 +61,7 @@ class RationalMap:
     optical_h: NDArray[np.floating]
     q: float | NDArray[np.floating]
     x_a: NDArray[np.floating]
+    x_b: NDArray[np.floating]
     dy: NDArray[np.floating]
 
     @classmethod
@@ -75,18 +77,28 @@ class RationalMap:
         with np.errstate(divide="ignore", over="ignore"):
             span = np.minimum(span, v_a.dtype.type(clip) / optical_h)
         x_a, x_b = np.sqrt(1 + v_a / q), np.sqrt(1 + (v_a + span) / q)
-        return cls(v_a, span, optical_h, q, x_a, span / (q * (x_a + x_b)) / (x_a * x_b))
+        return cls(v_a, span, optical_h, q, x_a, x_b, span / (q * (x_a + x_b)) / (x_a * x_b))
 
     def __getitem__(self, which: NDArray[np.bool_]) -> RationalMap:
         """Part of the pieces, all of one scale."""
         return RationalMap(
-            self.v_a[which], self.span[which], self.optical_h[which], self.q, self.x_a[which], self.dy[which]
+            self.v_a[which],
+            self.span[which],
+            self.optical_h[which],
+            self.q,
+            self.x_a[which],
+            self.x_b[which],
+            self.dy[which],
         )
 
     @property
     def difficulty(self) -> NDArray[np.floating]:
-        """How hard the piece is for a Gauss-Legendre rule, (n,): its width in Y, and its optical depth."""
-        return self.dy + DEPTH_SHARE * (self.optical_h * self.span)
+        """How hard the piece is for a Gauss-Legendre rule, (n,): its width in Y, and its optical depth.
+
+        The depth counts by the ratio of both ends: far behind the light a piece is narrow, yet H (v - v_a) in Y is
+        all but level at first and steep at last.
+        """
+        return self.dy + DEPTH_SHARE * (self.optical_h * self.span) * (self.x_b / self.x_a)
 
     def at(self, node: float) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
         """Give v - v_a and its derivative by the node, each (n,), at a node between 0 and 1."""

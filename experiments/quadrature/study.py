@@ -1,6 +1,6 @@
 """How many exponentials the airlight needs: the rules of `quadrature_float32` beside Gauss-Legendre.
 
-`airlight quadrature --out results/quadrature` writes the page; half a minute.
+`airlight quadrature --out results/quadrature` writes the page; a minute.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from analytic import phase
 from analytic.models.equiangular import equiangular
+from analytic.models.light_factor import light_factor
 from analytic.models.quadrature import quadrature
 from analytic.models.quadrature_float32 import TOLERANCES, gauss_legendre, nodes_needed, pieces, quadrature_float32
 from analytic.models.rational_map import RationalRule, lobe_ratio
@@ -20,20 +21,18 @@ from analytic.models.rational_rules import RULES
 from analytic.phase import Phase
 from analytic.segments import Segments
 from experiments.pages import made_by, prepare_page
-from experiments.quadrature.thresholds import draw_lit_pieces
+from experiments.quadrature.thresholds import PHASES, draw_lit_pieces, draw_pieces_across, draw_pieces_behind
 from experiments.quadrature.tuning import draw_segments
 from scenes.replacing import replacing
 
 TITLE = "How many exponentials the airlight needs"
-SEGMENTS, SEED = 8000, 4711  # held out: the tuning draws other seeds
-# up to +-0.9, and beside the values of the tuning
-PHASES = (
-    phase("isotropic"),
-    phase("rayleigh"),
-    *(phase("hg", g=g) for g in (-0.9, 0.75, 0.9)),
-    *(phase("schlick", k=k) for k in (-0.9, 0.4, 0.9)),
-    *(phase("cornette_shanks", g=g) for g in (-0.9, -0.75, 0.9)),
-)
+SEGMENTS, SEED = 8000, 4711  # held out: the tuning and the thresholds draw other seeds
+# beyond what `tolerance` serves
+SHARP = (0.95, 0.99, -0.95, -0.99)
+SINGLE = PHASES[::3]  # the worst, Cornette-Shanks -0.2 and 0.8, among them
+TABLES = ((1, 0), (0, 1), (1, 0, 1), (0.001, 2, 1.5), (0.5, 1, 1.5, 2, 5))
+TINY = np.finfo(np.float32).tiny
+MOST_VISIBLE = 12  # optical depth from the eye to the light
 # nodes -> (clip, q) for Gauss-Legendre under the first map, and under that of the tuned rules, each from a search
 FIRST_MAP = {8: (8.0, 1.0), 10: (10.0, 1.4), 12: (10.0, 1.4), 16: (12.0, 2.0), 24: (16.0, 3.0)}
 SAME_MAP = {6: (10.76, 0.84), 8: (9.74, 0.72), 12: (11.69, 1.06), 16: (13.14, 1.47), 24: (15.09, 2.47)}
@@ -89,52 +88,128 @@ def same_map(drawn: Segments, function: Phase, nodes: int) -> NDArray[np.float64
 
 def page() -> str:
     """The study as Markdown."""
-    drawn, lit = draw_segments(SEGMENTS, SEED), draw_lit_pieces(SEGMENTS, SEED)
-    exact = {function: quadrature(drawn, function) for function in PHASES}
-    visible = drawn.sigma_t * drawn.d_a <= 12
+    drawn = draw_segments(SEGMENTS, SEED)
+    head = (
+        "# How many exponentials the airlight needs\n\n"
+        + made_by("airlight quadrature --out results/quadrature", "numpy")
+        + f"\n\nWorst relative error in float64 over {SEGMENTS:,} held-out segments and {len(PHASES)} phase functions: "
+        "isotropic, Rayleigh, and HG, Schlick and Cornette-Shanks from -0.9 to 0.9 in steps of 0.1, against "
+        "`quadrature`. `draw_segments` says how they are drawn: H 1e-4 .. 50, optical positions -50 .. 50, lengths "
+        "from 1e-7 to infinite. One exponential, two divisions and one value of the phase function a node.\n"
+    )
+    parts = (_rules(drawn), _sharp(drawn), _float32(), _tolerances(drawn))
+    return "\n".join((head, *("\n".join(part) + "\n" for part in parts))) + EXPLORED
 
-    def worst(model: Callable[[Segments, Phase], NDArray[np.floating]]) -> str:
-        return f"{max(np.max(np.abs(model(drawn, function) / exact[function] - 1)) for function in PHASES):.1e}"
+
+def _rules(drawn: Segments) -> list[str]:
+    """Every rule beside Gauss-Legendre, over all phase functions up to +-0.9."""
+    exact = {function: quadrature(drawn, function) for function in PHASES}
+    visible = drawn.sigma_t * drawn.d_a <= MOST_VISIBLE
+
+    def worst(model: Callable[..., NDArray[np.floating]], nodes: int, which: NDArray[np.bool_] | slice) -> str:
+        part = drawn[which]
+        errors = {p: np.max(np.abs(model(part, p, nodes=nodes) / exact[p][which] - 1)) for p in PHASES}
+        return f"{max(errors.values()):.1e}"
 
     lines = [
-        f"# {TITLE}",
-        "",
-        made_by("airlight quadrature --out results/quadrature", "numpy"),
-        "",
-        f"Worst relative error in float64 over {SEGMENTS:,} held-out segments and {len(PHASES)} phase functions up to "
-        "+-0.9, against `quadrature`. `draw_segments` says how they are drawn: H 1e-4 .. 50, optical positions "
-        "-50 .. 50, lengths from 1e-7 to infinite. One exponential, two divisions and one value of the phase function "
-        "a node.",
-        "",
         "| nodes | Gauss-Legendre, v = q (X^2 - X) | Gauss-Legendre, v = q (X^2 - 1) | tuned | equiangular (visible) |",
         "|---|---|---|---|---|",
     ]
     for nodes in RULES:
-        first = worst(lambda s, p, n=nodes: first_map(s, p, n)) if nodes in FIRST_MAP else ""  # type: ignore[misc]
-        same = worst(lambda s, p, n=nodes: same_map(s, p, n)) if nodes in SAME_MAP else ""  # type: ignore[misc]
-        tuned = worst(lambda s, p, n=nodes: quadrature_float32(s, p, nodes=n))  # type: ignore[misc]
-        angle = max(np.max(np.abs(equiangular(drawn[visible], p, nodes=nodes) / exact[p][visible] - 1)) for p in PHASES)
-        lines.append(f"| {nodes} | {first} | {same} | {tuned} | {angle:.1e} |")
-    lines += [
+        first = worst(first_map, nodes, slice(None)) if nodes in FIRST_MAP else ""
+        same = worst(same_map, nodes, slice(None)) if nodes in SAME_MAP else ""
+        tuned, angle = worst(quadrature_float32, nodes, slice(None)), worst(equiangular, nodes, visible)
+        lines.append(f"| {nodes} | {first} | {same} | {tuned} | {angle} |")
+    return lines
+
+
+def _sharp(drawn: Segments) -> list[str]:
+    """The tuned rules with lobes that they were not tuned for, and with tables."""
+    families: tuple[tuple[str, Callable[[float], Phase]], ...] = (
+        ("hg", lambda g: phase("hg", g=g)),
+        ("schlick", lambda k: phase("schlick", k=k)),
+        ("cornette_shanks", lambda g: phase("cornette_shanks", g=g)),
+    )
+    columns = [(f"{name} {g}", [make(g)]) for name, make in families for g in SHARP]
+    columns.append(("tables", [phase("tabulated", values=values) for values in TABLES]))
+    lines = [
+        "## Sharper lobes and tables",
         "",
+        f"The tables are {', '.join(map(str, TABLES))}: some fall to 0 at one end.",
+        "",
+        f"| nodes | {' | '.join(name for name, _ in columns)} |",
+        "|---" * (len(columns) + 1) + "|",
+    ]
+    exact = {function: quadrature(drawn, function) for _, functions in columns for function in functions}
+    for nodes in RULES:
+        worst = [
+            max(np.max(np.abs(quadrature_float32(drawn, p, nodes=nodes) / exact[p] - 1)) for p in functions)
+            for _, functions in columns
+        ]
+        lines.append(f"| {nodes} | {' | '.join(f'{error:.1e}' for error in worst)} |")
+    return lines
+
+
+def _float32() -> list[str]:
+    """In single precision, the factor e^{-sigma_t d_a} included."""
+    drawn = draw_segments(10 * SEGMENTS, SEED + 1)
+    depth = drawn.sigma_t * drawn.d_a
+    parts = [drawn[depth <= MOST_VISIBLE].astype(np.float32), drawn[depth > MOST_VISIBLE].astype(np.float32)]
+    sizes = " and ".join(f"{len(part):,}" for part in parts)
+    lines = [
+        "## In float32",
+        "",
+        f"{sizes} segments: the light at an optical depth of up to {MOST_VISIBLE} from the eye, and beyond, up to 71. "
+        f"{len(SINGLE)} phase functions, the factor e^(-sigma_t d_a) included. In brackets it is divided out.",
+        "",
+        f"| nodes | up to {MOST_VISIBLE} | beyond |",
+        "|---|---|---|",
+    ]
+    exact, factors = [], []
+    for single in parts:
+        double = single.astype(np.float64)
+        # where float32 holds the result with all its digits
+        exact.append([np.where(e > TINY, e, np.nan) for e in (quadrature(double, function) for function in SINGLE)])
+        own = light_factor(single.h, single.x_a, single.sigma_t)
+        factors.append(own / np.exp(-double.sigma_t * double.d_a))
+    for nodes in RULES:
+        cells = []
+        for single, right, factor in zip(parts, exact, factors, strict=True):
+            ratios = [quadrature_float32(single, p, nodes=nodes) / e for p, e in zip(SINGLE, right, strict=True)]
+            raw, bare = (max(np.nanmax(np.abs(ratio / by - 1)) for ratio in ratios) for by in (1.0, factor))
+            cells.append(f"{raw:.1e} ({bare:.1e})")
+        lines.append(f"| {nodes} | {' | '.join(cells)} |")
+    return lines
+
+
+def _tolerances(drawn: Segments) -> list[str]:
+    """What `tolerance` keeps and spends, on the whole domain and on pieces."""
+    tables = [phase("tabulated", values=values) for values in TABLES]
+    sets = {
+        "domain": drawn,
+        "lit pieces": draw_lit_pieces(SEGMENTS, SEED),
+        "pieces behind": draw_pieces_behind(SEGMENTS, SEED),
+        "pieces across": draw_pieces_across(SEGMENTS, SEED),
+    }
+    lines = [
         "## Nodes chosen for each segment",
         "",
-        "| tolerance | worst error, domain | worst error, lit pieces | mean nodes, domain | mean nodes, lit pieces |",
-        "|---|---|---|---|---|",
+        "For each set of segments the worst error with the phase functions above, the worst with the tables, and the "
+        "mean number of nodes without the tables.",
+        "",
+        f"| tolerance | {' | '.join(f'{name} | {name}, tables | {name}, nodes' for name in sets)} |",
+        "|---" * (3 * len(sets) + 1) + "|",
     ]
+    exact = {(name, p): quadrature(sets[name], p) for name in sets for p in (*PHASES, *tables)}
     for tolerance in TOLERANCES:
-        kept, kept_lit, mean, mean_lit = [], [], [], []
-        for function in PHASES:
-            value = quadrature_float32(drawn, function, tolerance=tolerance)
-            kept.append(np.max(np.abs(value / exact[function] - 1)))
-            value = quadrature_float32(lit, function, tolerance=tolerance)
-            kept_lit.append(np.max(np.abs(value / quadrature(lit, function) - 1)))
-            mean.append(nodes_needed(drawn, function, tolerance).mean())
-            mean_lit.append(nodes_needed(lit, function, tolerance).mean())
-        lines.append(
-            f"| {tolerance:g} | {max(kept):.1e} | {max(kept_lit):.1e} | {np.mean(mean):.2f} | {np.mean(mean_lit):.2f} |"
-        )
-    return "\n".join(lines) + "\n" + EXPLORED
+        cells = []
+        for name, part in sets.items():
+            for functions in (PHASES, tables):
+                errors = (quadrature_float32(part, p, tolerance=tolerance) / exact[name, p] - 1 for p in functions)
+                cells.append(f"{max(np.max(np.abs(error)) for error in errors):.1e}")
+            cells.append(f"{np.mean([nodes_needed(part, p, tolerance).mean() for p in PHASES]):.2f}")
+        lines.append(f"| {tolerance:g} | {' | '.join(cells)} |")
+    return lines
 
 
 def write_study(folder: Path) -> None:

@@ -51,6 +51,8 @@ def test_float32():
     assert np.max(np.abs(value / quadrature(single.astype(np.float64), isotropic) - 1)) < 1e-3
 
 
-def test_no_nodes_are_refused():
-    with pytest.raises(ValueError, match=r"^nodes must"):
-        equiangular(draw_segments(2, 1), phase("isotropic"), nodes=0)
+@pytest.mark.parametrize("nodes", [0, 4097, 100_000, 16.0])
+def test_numbers_of_nodes_are_refused(nodes):
+    # 100,000 would be a matrix of 75 GiB to some ways of finding them
+    with pytest.raises(ValueError, match=r"^nodes must be a whole number, 1 to 4096"):
+        equiangular(draw_segments(2, 1), phase("isotropic"), nodes=nodes)
