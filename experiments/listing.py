@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rich.table import Table
 
+from analytic import MODELS
 from experiments.suite import shipped as shipped_suites
 from gpu_impl.techniques import AIRLIGHT_MODELS, TECHNIQUES, VISIBILITIES
 from scenes.catalogue import FOLDER, shipped
@@ -21,9 +22,14 @@ def listing() -> list[Table]:
         ),
         _table("visibilities", ("name", "what"), [(name, part.what) for name, part in VISIBILITIES.items()]),
         _table(
-            "airlight models",
+            "airlight models of the techniques",
             ("name", "what", "phase functions"),
             [(name, part.what, ", ".join(part.phases or ("any",))) for name, part in AIRLIGHT_MODELS.items()],
+        ),
+        _table(
+            "airlight models of the library (analytic.MODELS)",
+            ("name", "source", "phase functions"),
+            [(name, model.citation, ", ".join(model.phases or ("any",))) for name, model in MODELS.items()],
         ),
         _table("suites", ("name",), [(name,) for name in shipped_suites()]),
         _table("meshes", ("name", "from", "path"), [(m.name, m.origin, str(m.path)) for m in available()]),

@@ -20,7 +20,7 @@ from experiments import cli
 from experiments.exr import read_exr, write_exr
 from gpu_impl.techniques import Technique
 
-COMMANDS = ["doctor", "list", "render", "reference", "compare", "run"]
+COMMANDS = ["doctor", "list", "render", "reference", "compare", "run", "audit", "atlas", "quadrature", "spectra"]
 EXECUTABLE = Path(sys.executable).parent / "airlight"
 SMALL = ["--size", "16", "16"]
 
@@ -38,7 +38,7 @@ def test_help_has_an_example(airlight, command: str) -> None:
 def test_list_names_what_there_is(airlight) -> None:
     result = airlight("list")
     assert result.code == 0
-    for name in ("donut_dragon", "Weng2010", "lit_intervals", "quadrature", "quick", "torus.ply"):
+    for name in ("donut_dragon", "Weng2010", "lit_intervals", "quadrature", "weng2010:printed", "quick", "torus.ply"):
         assert name in result.out
 
 
