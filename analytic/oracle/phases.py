@@ -17,6 +17,7 @@ from __future__ import annotations
 import itertools
 import math
 import sys
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -47,11 +48,12 @@ class ExactPhase:
     kinks: tuple[Any, ...] = ()
 
 
-class Positive:
+class Positive(ABC):
     """A piece without a subtraction."""
 
+    @abstractmethod
     def value(self, cos2: Any, sin2: Any) -> Any:
-        raise NotImplementedError
+        """Value [1/sr], as `Piece` has it."""
 
     def size(self, cos2: Any, sin2: Any) -> Any:
         """The value itself."""
