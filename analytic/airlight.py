@@ -86,6 +86,10 @@ def airlight(
         height, start, end = height[..., None], start[..., None], end[..., None]
     arrays = np.broadcast_arrays(height, start, end, medium.sigma_t)
     shape = arrays[0].shape
+    try:
+        np.broadcast_shapes(power.shape, medium.sigma_s.shape, shape)
+    except ValueError:
+        raise ValueError(f"intensity must have a shape that broadcasts with {shape}: {power.shape}") from None
     height, start, end, sigma_t = (array.ravel() for array in arrays)
     pieces = Segments.between(height, start, end, sigma_t)
 
@@ -99,10 +103,6 @@ def airlight(
     given = pieces[plain] if precision == np.float64 else pieces[plain].astype(precision)
     result[plain] = chosen.function(given, phase, **options)
 
-    try:
-        np.broadcast_shapes(power.shape, medium.sigma_s.shape, shape)
-    except ValueError:
-        raise ValueError(f"intensity must have a shape that broadcasts with {shape}: {power.shape}") from None
     # no light and no scattering make no airlight, at the lamp neither; what float64 cannot hold is inf
     with np.errstate(invalid="ignore", over="ignore"):
         scale = power * medium.sigma_s
