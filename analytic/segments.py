@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-__all__ = ["Segments", "h_times_v"]
+__all__ = ["Segments", "h_times_v", "half_angle"]
 
 # h enters as (h / (x r))^2, r the width of a phase function's peak: this much of |x| is nothing in float64 for any peak
 # that a float64 parameter can have
@@ -108,17 +108,19 @@ class Segments:
 
         Nowhere does it where the segment contains the light's projection, for there is no finite limit.
         """
-        return self.h <= self._negligible_h
+        return self.h <= self._negligible_h(NEGLIGIBLE)
 
-    def beside_light(self) -> Segments:
-        """Raise h to what is negligible yet not 0, so that a ray through the light is an ordinary one."""
-        h = np.maximum(self.h, self._negligible_h)
+    def beside_light(self, share: float = NEGLIGIBLE) -> Segments:
+        """Raise h to what is negligible yet not 0, so that a ray through the light is an ordinary one.
+
+        `share` is how much of its distance from the light a segment does not notice.
+        """
+        h = np.maximum(self.h, self._negligible_h(share))
         return Segments(h, self.x_a, self.x_b, self.length, self.sigma_t)
 
-    @property
-    def _negligible_h(self) -> NDArray[np.floating]:
+    def _negligible_h(self, share: float) -> NDArray[np.floating]:
         away = np.maximum(self.x_a, -self.x_b)
-        return np.where(away > 0, np.maximum(NEGLIGIBLE * away, np.finfo(away.dtype).tiny), 0)
+        return np.where(away > 0, np.maximum(share * away, np.finfo(away.dtype).tiny), 0)
 
 
 def h_times_v(h: NDArray[np.floating], x: NDArray[np.floating]) -> NDArray[np.floating]:
@@ -137,3 +139,20 @@ def h_times_v(h: NDArray[np.floating], x: NDArray[np.floating]) -> NDArray[np.fl
     """
     d = np.hypot(h, x)
     return np.where(x > 0, x + d, h * (h / (d - np.minimum(x, 0))))
+
+
+def half_angle(
+    h: NDArray[np.floating], x: NDArray[np.floating], d: NDArray[np.floating]
+) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
+    """cos^2(theta / 2) and sin^2(theta / 2) at x, each (...), theta the scattering angle: cos theta = -x / d.
+
+    The smaller one is divided out, never subtracted.
+
+    Parameters
+    ----------
+    h, x, d : ndarray, (...)  distance of the light from the ray, position, distance of the light [scene unit]
+    """
+    tangent = h / (d + np.abs(x))
+    smaller = tangent * tangent / (1 + tangent * tangent)
+    before = x < 0
+    return np.where(before, 1 - smaller, smaller), np.where(before, smaller, 1 - smaller)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from analytic.models.quadrature_float32 import gauss_legendre
+from analytic.gauss_legendre import gauss_legendre
 from analytic.models.rational_rules import RULES
 
 __all__ = ["gauss_legendre_glsl", "rational_rule_glsl"]

@@ -27,12 +27,12 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import roots_legendre
 
+from analytic.gauss_legendre import gauss_legendre
 from analytic.inputs import whole_number
 from analytic.models.model import AirlightModel
 from analytic.phase import Phase
-from analytic.segments import Segments
+from analytic.segments import Segments, half_angle
 
 __all__ = ["MODEL", "equiangular"]
 
@@ -59,7 +59,7 @@ def equiangular(segments: Segments, phase: Phase, *, nodes: int = 16) -> NDArray
 
     Source: Kulla and Fajardo 2012, whose sampling density this is; Weng 2010, Eq. 16.
     """
-    abscissae, weights = roots_legendre(whole_number("nodes", nodes, 1, MOST_NODES))
+    rule = gauss_legendre(whole_number("nodes", nodes, 1, MOST_NODES))
     s = segments
     u_a, u_b = s.x_a / s.h, s.x_b / s.h
     # tan(alpha_b - alpha_a) without a difference of angles; 1 + u_a u_b < 0 turns it past a right angle
@@ -68,17 +68,15 @@ def equiangular(segments: Segments, phase: Phase, *, nodes: int = 16) -> NDArray
     angle = np.where(finite, np.arctan2(s.length / s.h, 1 + u_a * end), np.arctan2(1, u_a)).astype(s.h.dtype)
     d_a = np.hypot(s.h, s.x_a)
     total = np.zeros_like(s.h)
-    for abscissa, weight in zip(((abscissae + 1) / 2).tolist(), (weights / 2).tolist(), strict=True):
+    for abscissa, weight in zip(*rule, strict=True):
         turned = angle * abscissa
         sine, cosine = np.sin(turned), np.cos(turned)
         # x = h tan(alpha_a + turned); past = x - x_a, d = distance from the light
         past = sine * d_a * d_a / (s.h * cosine - s.x_a * sine)
         x = s.x_a + past
         d = np.hypot(s.h, x)
-        small = s.h / (d + np.abs(x))
-        minor = small * small / (1 + small * small)
-        cos2, sin2 = np.where(x < 0, 1 - minor, minor), np.where(x < 0, minor, 1 - minor)
-        total += weight * (np.exp(-s.sigma_t * (past + d)) * phase.of_half_angle(cos2, sin2))
+        scattered = phase.of_half_angle(*half_angle(s.h, x, d))
+        total += weight * (np.exp(-s.sigma_t * (past + d)) * scattered)
     return total * angle / s.h
 
 

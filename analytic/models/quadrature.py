@@ -20,6 +20,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.gauss_legendre import gauss_legendre
+from analytic.kinks import cut, kinks_along_ray
 from analytic.models.model import AirlightModel
 from analytic.phase import Phase
 from analytic.segments import Segments
@@ -29,14 +31,13 @@ __all__ = ["MODEL", "quadrature"]
 PANEL_WIDTH = 1.5
 # measured: no split of the depth at all costs up to 3.7e-12, 24 in a panel as little as 12
 PANEL_OPTICAL_DEPTH = 24.0
-FULL = np.polynomial.legendre.leggauss(20)
+FULL = gauss_legendre(20)
 # of a piece between two values of a fine table, a single panel: narrower than NARROW in tau and thinner than that
-FEW = np.polynomial.legendre.leggauss(8)
+FEW = gauss_legendre(8)
 NARROW = 0.1
 LARGEST_OPTICAL_DEPTH = 60.0
 LARGEST_RATIO = 1e18
 CHUNK = 1 << 18  # integrand values held at once: 2 MiB an array
-PIECES = 1 << 16  # pieces between kinks held at once
 
 
 def quadrature(segments: Segments, phase: Phase) -> NDArray[np.floating]:
@@ -59,32 +60,20 @@ def quadrature(segments: Segments, phase: Phase) -> NDArray[np.floating]:
 
 def _between_kinks(segments: Segments, phase: Phase) -> NDArray[np.floating]:
     """The integral over v, (n,), of a function that is smooth from one kink to the next."""
-    at_once = max(1, PIECES // (len(phase.kinks) + 1))
-    parts = [_cut(segments[i : i + at_once], phase) for i in range(0, len(segments), at_once)]
-    return np.concatenate(parts) if parts else np.zeros_like(segments.h)
-
-
-def _cut(segments: Segments, phase: Phase) -> NDArray[np.floating]:
-    """The same of a few segments, all their pieces at once."""
-    cosines = np.asarray(phase.kinks)[::-1]
-    kinks = -cosines / np.sqrt((1 - cosines) * (1 + cosines))
+    kinks = kinks_along_ray(phase)
     u_a, u_b = segments.x_a / segments.h, segments.x_b / segments.h
-    first, last = np.searchsorted(kinks, u_a, "right"), np.searchsorted(kinks, u_b, "left")
-    cuts = np.maximum(last - first, 0)
-    # one entry a piece: the segment it belongs to, and which of the segment's pieces it is
-    owner = np.repeat(np.arange(u_a.size), cuts + 1)
-    number = np.arange(owner.size) - np.repeat(np.cumsum(cuts + 1) - (cuts + 1), cuts + 1)
-    before = kinks[np.clip(first[owner] + number - 1, 0, kinks.size - 1)]
-    behind = kinks[np.clip(first[owner] + number, 0, kinks.size - 1)]
-    start = np.where(number == 0, u_a[owner], before)
-    end = np.where(number == cuts[owner], u_b[owner], behind)
-    # lengths in units of h; a segment that is not cut keeps the length that it was given
-    length = np.where(cuts[owner] == 0, segments.length[owner] / segments.h[owner], end - start)
-    unit, optical_h = np.ones_like(start), segments.optical_h[owner]
-    piece = _smooth(Segments(unit, start, end, length, optical_h), phase)
-    before_it = np.where(number == 0, 0.0, Segments.between(unit, u_a[owner], start, optical_h).difference_of_v)
     integral = np.zeros_like(u_a)
-    np.add.at(integral, owner, np.exp(-optical_h * before_it) * piece)
+    for part in cut(kinks, u_a, u_b):
+        owner = part.owner
+        start = np.where(part.is_first, u_a[owner], kinks[part.before])
+        end = np.where(part.is_last, u_b[owner], kinks[part.behind])
+        # lengths in units of h; a segment that is not cut keeps the length that it was given
+        uncut = part.is_first & part.is_last
+        length = np.where(uncut, segments.length[owner] / segments.h[owner], end - start)
+        unit, optical_h = np.ones_like(start), segments.optical_h[owner]
+        piece = _smooth(Segments(unit, start, end, length, optical_h), phase)
+        way = Segments.between(unit, u_a[owner], start, optical_h).difference_of_v
+        np.add.at(integral, owner, np.exp(-optical_h * np.where(part.is_first, 0.0, way)) * piece)
     return integral
 
 
@@ -100,7 +89,7 @@ def _smooth(segments: Segments, phase: Phase) -> NDArray[np.floating]:
     integral = np.empty_like(start)
     for rule, which in ((FEW, np.flatnonzero(narrow)), (FULL, np.flatnonzero(~narrow))):
         order = which[np.argsort(panels[which], kind="stable")]
-        for part in _chunks(panels[order], rule[0].size):
+        for part in _chunks(panels[order], len(rule[0])):
             chosen = order[part]
             # points of nearly equal panel count share one array; the last one has the most
             count = int(panels[chosen[-1]])
@@ -124,12 +113,12 @@ def _composite(
     log_span: NDArray[np.floating],
     phase: Phase,
     panels: int,
-    rule: tuple[NDArray[np.floating], NDArray[np.floating]],
+    rule: tuple[tuple[float, ...], tuple[float, ...]],
 ) -> NDArray[np.floating]:
     """The integral over v of all segments of a chunk, (n,), with the same number of panels."""
-    nodes, node_weights = rule
-    fractions = (np.arange(panels)[:, None] + (1 + nodes) / 2).ravel() / panels
-    weights = np.tile(node_weights / (2 * panels), panels)
+    nodes, node_weights = np.array(rule)
+    fractions = (np.arange(panels)[:, None] + nodes).ravel() / panels
+    weights = np.tile(node_weights / panels, panels)
     tau = log_span[:, None] * fractions
     radius, v_a = phase.analytic_radius, segments.v_a[:, None]
     past = (v_a + radius) * np.expm1(tau)  # v - v_a

@@ -48,14 +48,15 @@ each, and what is above the last gets a tuned rule. It is kept in float64 for lo
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.gauss_legendre import gauss_legendre
 from analytic.inputs import real_number
+from analytic.kinks import cut, kinks_along_ray
 from analytic.models.light_factor import light_factor
 from analytic.models.model import AirlightModel
 from analytic.models.rational_map import RationalMap, RationalRule, lobe_ratio
@@ -71,9 +72,8 @@ DEFAULT_NODES = 24
 LARGEST_RATIO = 1e9
 # so far before the light v is 0, and the length of the way there nothing but a number that must not overflow
 FARTHEST = 1e30
-# of the distance between a segment and the light's projection: h below it changes nothing (`Segments.through_light`)
+# of the distance between a segment and the light's projection: h below it changes nothing, and v^2 stays in range
 NEGLIGIBLE = 1e-12
-PIECES = 1 << 16  # pieces between kinks held at once
 SHARPEST = 0.9  # |g| or |k| for which `TOLERANCES` were made
 # tolerance -> (nodes of the tuned rule, {nodes of a Gauss-Legendre rule: largest difficulty that it serves}, the same
 # with a table), made by `python -m experiments.quadrature.thresholds`
@@ -118,7 +118,7 @@ def quadrature_float32(
     Source: Weng 2010, Eq. 18, repaired; the map, the nodes and the thresholds are this project's.
     """
     rules, thresholds = _rules(phase, nodes, tolerance)
-    integral, h = np.zeros_like(segments.h), _visible_h(segments)
+    integral, h = np.zeros_like(segments.h), segments.beside_light(NEGLIGIBLE).h
     for owner, skipped, mapping in pieces(segments, phase, rules[-1]):
         value = np.empty_like(mapping.v_a)
         which = np.searchsorted(thresholds, mapping.difficulty)
@@ -166,12 +166,6 @@ def _rules(phase: Phase, nodes: int | None, tolerance: float | None) -> tuple[li
     return [*plain, tuned], list(thresholds.values())
 
 
-def gauss_legendre(count: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Nodes and weights on [0, 1]."""
-    x, weights = np.polynomial.legendre.leggauss(count)
-    return tuple(((x + 1) / 2).tolist()), tuple((weights / 2).tolist())
-
-
 def pieces(
     segments: Segments, phase: Phase, rule: RationalRule
 ) -> Iterator[tuple[NDArray[np.intp], NDArray[np.floating] | None, RationalMap]]:
@@ -183,7 +177,7 @@ def pieces(
     skipped : ndarray, (m,) or None  v - v_a where the piece begins; None where no segment is cut
     mapping : RationalMap            of the m pieces
     """
-    h, scale = _visible_h(segments), rule.q * lobe_ratio(phase)
+    h, scale = segments.beside_light(NEGLIGIBLE).h, rule.q * lobe_ratio(phase)
     with np.errstate(over="ignore"):
         u_a, u_b, length = segments.x_a / h, segments.x_b / h, segments.length / h
     # v is next to 0 beyond the one, and nothing is left beyond the other
@@ -194,40 +188,21 @@ def pieces(
         span = length * _slope(u_a, u_b)
         yield np.arange(u_a.size), None, RationalMap.of(_v(u_a), span, optical_h, scale, rule.clip)
         return
-    cosines = np.asarray(phase.kinks)[::-1]
-    exact_kinks = -cosines / np.sqrt((1 - cosines) * (1 + cosines))
+    exact_kinks = kinks_along_ray(phase)
     # the gap behind each kink, before it is rounded; the last one is never asked for
     kinks, gaps = exact_kinks.astype(u_a.dtype), np.diff(exact_kinks, append=np.inf).astype(u_a.dtype)
-    first, last = np.searchsorted(kinks, u_a, "right"), np.searchsorted(kinks, u_b, "left")
-    cuts = np.maximum(last - first, 0)
-    begins = np.cumsum(cuts + 1) - (cuts + 1)
-    for chosen in _chunks(begins):
-        owner = np.repeat(np.arange(chosen.start, chosen.stop), cuts[chosen] + 1)
-        number = np.arange(owner.size) + begins[chosen.start] - begins[owner]
-        kink = np.clip(first[owner] + number - 1, 0, kinks.size - 1)
-        before, behind = kinks[kink], kinks[np.minimum(first[owner] + number, kinks.size - 1)]
-        is_first, is_last, whole = number == 0, number == cuts[owner], length[owner]
-        begin = np.where(is_first, 0, np.minimum(before - u_a[owner], whole))
+    for part in cut(kinks, u_a, u_b):
+        owner, before, behind = part.owner, kinks[part.before], kinks[part.behind]
+        whole = length[owner]
+        begin = np.where(part.is_first, 0, np.minimum(before - u_a[owner], whole))
         # the difference of two places would forget what a short segment's length is; that of two long lengths, where
         # the end is
         rest = np.where(np.abs(u_b[owner]) < whole, u_b[owner] - before, whole - begin)
-        rest = np.where(is_first, whole, np.maximum(rest, 0))
-        du = np.where(is_last, rest, np.where(is_first, behind - u_a[owner], gaps[kink]))
-        start, stop = np.where(is_first, u_a[owner], before), np.where(is_last, u_b[owner], behind)
+        rest = np.where(part.is_first, whole, np.maximum(rest, 0))
+        du = np.where(part.is_last, rest, np.where(part.is_first, behind - u_a[owner], gaps[part.before]))
+        start, stop = np.where(part.is_first, u_a[owner], before), np.where(part.is_last, u_b[owner], behind)
         mapping = RationalMap.of(_v(start), du * _slope(start, stop), optical_h[owner], scale, rule.clip)
         yield owner, begin * _slope(u_a[owner], start), mapping
-
-
-def _chunks(begins: NDArray[np.intp]) -> Iterator[slice]:
-    """Ranges of segments with about PIECES pieces each; `begins` counts the pieces before each segment."""
-    bounds = np.flatnonzero(np.diff(begins // PIECES, prepend=-1))
-    for start, stop in itertools.pairwise([*bounds.tolist(), begins.size]):
-        yield slice(start, stop)
-
-
-def _visible_h(segments: Segments) -> NDArray[np.floating]:
-    """The light's distance from the ray, raised to what is negligible yet keeps v^2 in float32's range, (n,)."""
-    return np.maximum(segments.h, NEGLIGIBLE * np.maximum(segments.x_a, -segments.x_b))
 
 
 def _slope(u_0: NDArray[np.floating], u_1: NDArray[np.floating]) -> NDArray[np.floating]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from analytic.inputs import whole_number
 from analytic.models.model import AirlightModel
 from analytic.phase import Phase
-from analytic.segments import Segments
+from analytic.segments import Segments, half_angle
 
 __all__ = ["MODEL", "riemann"]
 
@@ -42,11 +42,8 @@ def riemann(segments: Segments, phase: Phase, *, steps: int = 64) -> NDArray[np.
         x = segments.x_a + along
         d2 = segments.h * segments.h + x * x
         d = np.sqrt(d2)
-        # cos theta = -x / d; the smaller of (1 - cos theta) / 2 and (1 + cos theta) / 2 is divided out, not subtracted
-        smaller = segments.h / (d + np.abs(x))
-        small = smaller * smaller / (1 + smaller * smaller)
-        cos2, sin2 = np.where(x < 0, 1 - small, small), np.where(x < 0, small, 1 - small)
-        total += np.exp(-segments.sigma_t * (along + d)) * phase.of_half_angle(cos2, sin2) / d2
+        scattered = phase.of_half_angle(*half_angle(segments.h, x, d))
+        total += np.exp(-segments.sigma_t * (along + d)) * scattered / d2
     return total * (segments.length / steps)
 
 

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import phase
+from analytic.gauss_legendre import gauss_legendre
 from analytic.models.equiangular import equiangular
 from analytic.models.light_factor import light_factor
 from analytic.models.quadrature import quadrature
-from analytic.models.quadrature_float32 import TOLERANCES, gauss_legendre, nodes_needed, pieces, quadrature_float32
+from analytic.models.quadrature_float32 import TOLERANCES, nodes_needed, pieces, quadrature_float32
 from analytic.models.rational_map import RationalRule, lobe_ratio
 from analytic.models.rational_rules import RULES
 from analytic.phase import Phase

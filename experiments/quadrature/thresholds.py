@@ -16,8 +16,8 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from analytic import phase
+from analytic.gauss_legendre import gauss_legendre
 from analytic.models.quadrature import quadrature
-from analytic.models.quadrature_float32 import gauss_legendre
 from analytic.models.rational_map import RationalMap, RationalRule, lobe_ratio
 from analytic.models.rational_rules import RULES
 from analytic.phase import Phase

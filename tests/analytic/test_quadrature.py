@@ -9,8 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from analytic import Medium, airlight, phase
-from analytic.models import quadrature
+from analytic import Medium, airlight, kinks, phase
 from analytic.oracle import exact_airlight
 
 FLOAT64_HOLDS = 1e-290  # below it a product of float64 factors may have lost digits to underflow
@@ -100,7 +99,7 @@ def test_a_fine_table_in_pieces(monkeypatch):
     x_a = random.uniform(-9, 3, 50)
     segments = 10 ** random.uniform(-2, 1, 50), x_a, x_a + 10 ** random.uniform(-3, 2, 50), Medium(0.1, 0.3), table
     whole = airlight(*segments)
-    monkeypatch.setattr(quadrature, "PIECES", 400)
+    monkeypatch.setattr(kinks, "PIECES", 400)
     # sums in another order; measured: 1.6e-15
     np.testing.assert_allclose(airlight(*segments), whole, rtol=1e-14)
     assert against_the_oracle(0.7, -3.0, 5.0, 0.3, table) < 1e-13

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from exact_airlight import cornette_shanks, henyey_greenstein, oracle, relative_error, tabulated
 
-from analytic import phase
-from analytic.models import quadrature_float32 as module
+from analytic import kinks, phase
 from analytic.models.quadrature import quadrature
 from analytic.models.quadrature_float32 import TOLERANCES, nodes_needed, quadrature_float32
 from analytic.models.rational_map import RationalMap, lobe_ratio
@@ -155,7 +154,7 @@ def test_fine_tables_in_chunks(monkeypatch):
     some = DRAWN[:200]
     whole = quadrature_float32(some, table)
     assert worst(whole, quadrature(some, table)) < 1e-6  # measured: 1.6e-7
-    monkeypatch.setattr(module, "PIECES", 50)
+    monkeypatch.setattr(kinks, "PIECES", 50)
     np.testing.assert_array_equal(quadrature_float32(some, table), whole)
     assert quadrature_float32(some[:0], table).size == 0
     single = some[some.d_a <= 12].astype(np.float32)
