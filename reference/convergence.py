@@ -5,20 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from reference.brightness import darkest
-from reference.estimators import Estimator, Image
-from reference.goal import Goal
-from scenes.errors import InputError
+from reference.estimators import Estimator
+from reference.goal import FEWEST_IN_LIMIT, FEWEST_PASSES, Goal
+from reference.moments import Image, Moments, check_finite, relative_errors, tiles
 
-# An error bar from few passes is itself uncertain. From 32, |z| > 4 by chance is a matter of 4e-4 (Student's t); from 8
-# it would be 5e-3, and every large image would seem to disagree somewhere.
-FEWEST_PASSES = 32
-# a time limit stops earlier, with the error bar that there is
-FEWEST_IN_TIME = 8
-PERCENTILE = 95
+# what a kill costs at most [s]
+KEEP_EVERY = 60.0
+StoppedBy = Literal["goal", "time", "samples", "interrupt", "exact"]
 
 
 @dataclass(frozen=True)
@@ -38,113 +36,171 @@ class Estimate:
     Attributes
     ----------
     mean, standard_error : dict of (H, W, 3)   radiance
-    image_mean, image_error : dict of (3,)     mean over the image, and its standard error from the passes
-    passes : int
-    rel_error : float    what was reached
-    reached : bool       whether that is what was asked
+    tile_mean, tile_error : dict               means over tiles of 8 x 8 pixels, (ceil(H / 8), ceil(W / 8), 3), and
+                                               their standard error from the passes
+    image_mean, image_error : dict of (3,)     the same of the image
+    samples : (H, W)       taken of each pixel in a pass
+    passes : int           0 for what is not sampled
+    planned_for : float    relative error for which `samples` were chosen
+    rel_error : float      what was reached, at the goal's percentile
+    stopped_by : str       "goal", "time" or "samples": which limit; "interrupt"; "exact" for what is not sampled
     seconds : float
     """
 
     mean: dict[str, Image]
     standard_error: dict[str, Image]
+    tile_mean: dict[str, Image]
+    tile_error: dict[str, Image]
     image_mean: dict[str, Image]
     image_error: dict[str, Image]
+    samples: NDArray[np.uint32]
     passes: int
+    planned_for: float
     rel_error: float
-    reached: bool
+    stopped_by: StoppedBy
     seconds: float
 
+    @property
+    def reached(self) -> bool:
+        """Whether it is as accurate as asked."""
+        return self.stopped_by in ("goal", "exact")
 
-class _Running:
-    """Welford's mean and variance of one layer, float64."""
+
+class _Layer:
+    """One layer's moments at three scales, for neighbouring pixels need not be independent."""
 
     def __init__(self) -> None:
-        self.count = 0
-        self.mean: Image = np.zeros(())
-        self.squares: Image = np.zeros(())
-        self.image_means: list[Image] = []
+        self.pixels, self.tiles, self.image = Moments(), Moments(), Moments()
+
+    @classmethod
+    def going_on(cls, layer: str, start: Estimate) -> _Layer:
+        """Take up what passes have left."""
+        made = cls()
+        made.pixels = Moments(start.mean[layer], start.standard_error[layer], start.passes)
+        made.tiles = Moments(start.tile_mean[layer], start.tile_error[layer], start.passes)
+        made.image = Moments(start.image_mean[layer], start.image_error[layer], start.passes)
+        return made
 
     def add(self, sample: Image) -> None:
-        self.count += 1
-        delta = sample - self.mean
-        self.mean = self.mean + delta / self.count
-        self.squares = self.squares + delta * (sample - self.mean)
-        # neighbouring pixels need not be independent, so the image mean gets an error bar of its own
-        self.image_means.append(sample.mean(axis=(0, 1)))
-
-    def standard_error(self) -> Image:
-        return np.sqrt(self.squares / (self.count * (self.count - 1)))
-
-    def image_error(self) -> Image:
-        return np.std(self.image_means, axis=0, ddof=1) / np.sqrt(self.count)
+        self.pixels.add(sample)
+        self.tiles.add(tiles(sample))
+        self.image.add(sample.mean(axis=(0, 1)))
 
 
-def converge(estimator: Estimator, goal: Goal, report: Callable[[Progress], None] | None = None) -> Estimate:
-    """Run passes until the goal is met or the time is up.
+def converge(
+    estimator: Estimator,
+    goal: Goal,
+    report: Callable[[Progress], None] | None = None,
+    start: Estimate | None = None,
+    keep: Callable[[Estimate], None] | None = None,
+) -> Estimate:
+    """Run passes until the goal is met, or a limit is.
+
+    Parameters
+    ----------
+    report : called after each pass
+    start : a stopped estimate of the same estimator, to go on with
+    keep : called with what there is once a minute, and when Ctrl-C or SystemExit ends the work
 
     Raises
     ------
-    InputError
-        An estimate is not finite, or is zero everywhere.
+    NotFiniteError
+        An estimate is infinite or not a number somewhere.
+    BlackReferenceError
+        It is zero everywhere.
     """
     begin = time.perf_counter()
-    running = {layer: _Running() for layer in estimator.layers}
-    decisive = running[estimator.layers[0]]
-    passes, reached = 0, False
-    while True:
-        for layer, image in estimator.one_pass(seed=passes).items():
-            _check_finite(layer, image)
-            running[layer].add(image)
-        passes += 1
-        seconds = time.perf_counter() - begin
-        if passes < 2:
-            continue
-        present = relative_error(decisive.mean, decisive.standard_error())
-        if report:
-            # the error falls with the square root of the number of passes
-            needed = max(FEWEST_PASSES, passes * (present / goal.rel_error) ** 2)
-            left = min(seconds * (needed / passes - 1), goal.time_limit - seconds)
-            report(Progress(passes, present, seconds, max(left, 0.0)))
-        reached = passes >= FEWEST_PASSES and present <= goal.rel_error
-        if reached or (seconds > goal.time_limit and passes >= FEWEST_IN_TIME):
-            break
-    fixed = estimator.fixed()
-    for layer, image in fixed.items():
-        _check_finite(layer, image)
-    nothing = {layer: np.zeros_like(image) for layer, image in fixed.items()}
-    return Estimate(
-        mean={layer: r.mean for layer, r in running.items()} | fixed,
-        standard_error={layer: r.standard_error() for layer, r in running.items()} | nothing,
-        image_mean={layer: r.mean.mean(axis=(0, 1)) for layer, r in running.items()}
-        | {layer: image.mean(axis=(0, 1)) for layer, image in fixed.items()},
-        image_error={layer: r.image_error() for layer, r in running.items()} | {layer: np.zeros(3) for layer in fixed},
-        passes=passes,
-        rel_error=present,
-        reached=reached,
-        seconds=time.perf_counter() - begin,
-    )
+    if start:
+        estimator.samples = start.samples
+    else:
+        estimator.plan(goal)
+    run = _Run(estimator, goal, start, begin)
+    kept = time.perf_counter()
+    try:
+        while not (stopped_by := run.stopped_by()):
+            run.one_pass()
+            if report and run.passes > 1:
+                report(run.progress())
+            if keep and run.passes > 1 and time.perf_counter() - kept > KEEP_EVERY:
+                keep(run.estimate("interrupt"))
+                kept = time.perf_counter()
+    except (KeyboardInterrupt, SystemExit):
+        if keep and run.passes > 1:
+            keep(run.estimate("interrupt"))
+        raise
+    return run.estimate(stopped_by)
 
 
-def relative_error(mean: Image, standard_error: Image) -> float:
-    """Standard error over mean at the 95th percentile of the pixels and channels that are lit; see `darkest`.
+class _Run:
+    """One run of passes, from nothing or from where another one stopped."""
 
-    Raises
-    ------
-    InputError
-        The image is zero everywhere.
-    """
-    floor = darkest(mean)
-    if floor == 0:
-        raise InputError(
-            "The reference is zero everywhere: the camera sees no fog that light reaches, the fog scatters none "
-            "(albedo or sigma_t is 0), or it lets none through (sigma_t is too large for these distances)."
+    def __init__(self, estimator: Estimator, goal: Goal, start: Estimate | None, begin: float) -> None:
+        self._estimator, self._goal, self._start, self._begin = estimator, goal, start, begin
+        self.passes = start.passes if start else 0
+        self._layers = {layer: _Layer.going_on(layer, start) if start else _Layer() for layer in estimator.layers}
+        self._fixed: dict[str, _Layer] = {}
+        for layer, image in estimator.fixed().items():
+            check_finite(layer, image)
+            self._fixed[layer] = _Layer()
+            for _ in range(2):  # twice the same has no error
+                self._fixed[layer].add(image)
+
+    @property
+    def _seconds(self) -> float:
+        return time.perf_counter() - self._begin
+
+    def one_pass(self) -> None:
+        for layer, image in self._estimator.one_pass(seed=self.passes).items():
+            check_finite(layer, image)
+            self._layers[layer].add(image)
+        self.passes += 1
+
+    def rel_error(self) -> float:
+        decisive = self._layers[self._estimator.layers[0]].pixels
+        return relative_error(decisive.mean, decisive.standard_error, self._goal.percentile)
+
+    def stopped_by(self) -> StoppedBy | None:
+        if self.passes >= FEWEST_PASSES and self.rel_error() <= self._goal.rel_error:
+            return "goal"
+        if self.passes < FEWEST_IN_LIMIT:
+            return None
+        # of a run that goes on, the time starts anew; it does at least one pass
+        if self._seconds > self._goal.time_limit and (not self._start or self.passes > self._start.passes):
+            return "time"
+        return "samples" if self._samples_left() < 1 else None
+
+    def _samples_left(self) -> float:
+        """Passes that the sample limit has left."""
+        if self._goal.sample_limit is None:
+            return np.inf
+        return self._goal.sample_limit / float(self._estimator.samples.mean()) - self.passes
+
+    def progress(self) -> Progress:
+        present = self.rel_error()
+        # the error falls with the square root of the number of passes
+        needed = max(FEWEST_PASSES, self.passes * (present / self._goal.rel_error) ** 2) - self.passes
+        done = self.passes - (self._start.passes if self._start else 0)
+        left = min(self._seconds / done * min(needed, self._samples_left()), self._goal.time_limit - self._seconds)
+        return Progress(self.passes, present, self._seconds, max(left, 0.0))
+
+    def estimate(self, stopped_by: StoppedBy) -> Estimate:
+        layers = (self._layers | self._fixed).items()
+        return Estimate(
+            mean={layer: of.pixels.mean for layer, of in layers},
+            standard_error={layer: of.pixels.standard_error for layer, of in layers},
+            tile_mean={layer: of.tiles.mean for layer, of in layers},
+            tile_error={layer: of.tiles.standard_error for layer, of in layers},
+            image_mean={layer: of.image.mean for layer, of in layers},
+            image_error={layer: of.image.standard_error for layer, of in layers},
+            samples=self._estimator.samples,
+            passes=self.passes,
+            planned_for=self._start.planned_for if self._start else self._goal.rel_error,
+            rel_error=self.rel_error(),
+            stopped_by=stopped_by,
+            seconds=self._seconds + (self._start.seconds if self._start else 0.0),
         )
-    lit = mean > 0
-    return float(np.percentile(standard_error[lit] / np.maximum(mean[lit], floor), PERCENTILE))
 
 
-def _check_finite(layer: str, image: Image) -> None:
-    if not np.isfinite(image).all():
-        raise InputError(
-            f"The reference's layer '{layer}' has pixels that are not finite; is a light inside a surface?"
-        )
+def relative_error(mean: Image, standard_error: Image, percentile: float) -> float:
+    """Standard error over mean at a percentile of the pixels and channels that are lit; see `relative_errors`."""
+    return float(np.nanpercentile(relative_errors(mean, standard_error), percentile))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,11 @@ from scenes.mitsuba_setup import mitsuba
 
 mi = mitsuba()
 import drjit as dr  # noqa: E402
+
+# Optical depth of the light from the ray's beginning from which the fog is thick. On `sphere` with 16 strata a pixel's
+# median spread is 0.007 / 0.018 / 0.042 / 0.072 / 0.15 / 0.37 at depths 0.6 / 6 / 13 / 19 / 32 / 64 by the equiangular
+# density alone, and 0.018 / 0.018 / 0.021 / 0.024 / 0.028 / 0.034 where half of the samples come from the other one.
+THICK = 6.0
 
 
 def position_of(emitter: Any, ray: Any) -> Any:
@@ -57,13 +63,20 @@ def reach(emitter: Any, ray: Any, t_max: Any) -> tuple[Any, Any]:
     return mi.Float(begin), mi.Float(dr.select(dark, begin, dr.clip(end, begin, t_max)))
 
 
-def equiangular(ray: Any, begin: Any, end: Any, position: Any, u: Any) -> tuple[Any, Any]:
-    """Sample a distance on [begin, end] with density proportional to 1 / d^2 (Kulla and Fajardo 2012, section 4).
+def equiangular_or_attenuated(
+    ray: Any, begin: Any, end: Any, position: Any, sigma_t: Any
+) -> Callable[[Any], tuple[Any, Any]]:
+    """Sample a distance on [begin, end] in proportion to 1 / d^2, or to the transmittance of both legs.
+
+    The first is Kulla and Fajardo 2012, section 4. In thick fog it would spend nearly all samples where nothing is left
+    to see: the integrand's other factor is e^(-sigma_t w), w = t + d the whole way, in which it is sampled directly,
+    dw / dt = w / d counted from the light's projection. There the two are drawn as one mixture, half and
+    half; in thin fog the second has nothing to add.
 
     Returns
     -------
-    t : Float              [scene unit]
-    inverse_pdf : Float    [scene unit]
+    sample : callable
+        A number from 0 to 1, Float64, to a distance t, Float, and the inverse of its density, Float [scene unit].
     """
     # float64, and the difference of the two angles as one arc tangent: on a ray that points at the light or away from
     # it both are pi / 2 but for a millionth, and float32 would quantise their difference alike in every pass
@@ -74,29 +87,51 @@ def equiangular(ray: Any, begin: Any, end: Any, position: Any, u: Any) -> tuple[
     h = dr.maximum(dr.norm(dr.cross(to_light, d)), 1e-14 * dr.maximum(dr.abs(s_a), dr.abs(s_b)))
     h = dr.maximum(h, 1e-300)
     angle = dr.atan2((s_b - s_a) * h, dr.square(h) + s_a * s_b)
-    tangent = dr.tan(angle * mi.Float64(u))
-    s = s_a + tangent * (dr.square(h) + dr.square(s_a)) / (h - s_a * tangent)
-    # the weight belongs to the distance that float32 keeps
-    t = dr.clip(mi.Float(s + t_h), begin, end)
-    s = mi.Float64(t) - t_h
-    return t, mi.Float(angle * (dr.square(h) + dr.square(s)) / h)
+
+    def way(s: Any) -> Any:
+        return dr.select(s > 0, s + dr.hypot(h, s), dr.square(h) / (dr.hypot(h, s) + dr.abs(s)))
+
+    w_a, rate = way(s_a), dr.maximum(mi.Float64(sigma_t), 1e-300)
+    depth = rate * (way(s_b) - w_a)
+    lost = dr.maximum(1 - dr.exp(-depth), 1e-300)
+    # a piece of next to no depth is one on which the two densities are the same but for lost digits
+    share = dr.select((rate * dr.hypot(h, s_a) > THICK) & (depth > 1e-3), 0.5, 0)
+
+    def sample(u: Any) -> tuple[Any, Any]:
+        attenuated = u < share
+        tangent = dr.tan(angle * (u - share) / (1 - share))
+        s = s_a + tangent * (dr.square(h) + dr.square(s_a)) / (h - s_a * tangent)
+        w = w_a - dr.log(1 - lost * u / dr.maximum(share, 1e-300)) / rate
+        s = dr.select(attenuated, 0.5 * (w - dr.square(h) / w), s)
+        # the weight belongs to the distance that float32 keeps
+        t = dr.clip(mi.Float(s + t_h), begin, end)
+        s = mi.Float64(t) - t_h
+        pdf = (1 - share) * h / (angle * (dr.square(h) + dr.square(s)))
+        w = way(s)
+        pdf += share * rate * dr.exp(-rate * (w - w_a)) / lost * w / dr.hypot(h, s)
+        return t, mi.Float(dr.select(angle > 0, 1 / pdf, 0))
+
+    return sample
 
 
-def even_or_attenuated(begin: Any, end: Any, sigma_t: Any, u: Any) -> tuple[Any, Any]:
+def even_or_attenuated(begin: Any, end: Any, sigma_t: Any) -> Callable[[Any], tuple[Any, Any]]:
     """Sample a distance on [begin, end] evenly or by e^(-sigma_t t), each half the time, for parallel light.
 
     Where the light's own way grows shorter along the ray the integrand does not fall, so neither serves alone.
 
     Returns
     -------
-    t : Float              [scene unit]
-    inverse_pdf : Float    [scene unit]
+    sample : callable    as that of `equiangular_or_attenuated`
     """
-    length, rate, v = mi.Float64(end - begin), mi.Float64(sigma_t), mi.Float64(u)
+    length, rate = mi.Float64(end - begin), mi.Float64(sigma_t)
     # in fog so thin the two are one, and the differences from 1 below have lost their digits
     rate = dr.maximum(rate, 1e-6 / dr.maximum(length, 1e-300))
     lost = 1 - dr.exp(-rate * length)
-    s = dr.select(v < 0.5, -dr.log(1 - 2 * v * lost) / rate, (2 * v - 1) * length)
-    s = dr.clip(s, 0, length)
-    pdf = 0.5 * rate * dr.exp(-rate * s) / lost + 0.5 / dr.maximum(length, 1e-300)
-    return mi.Float(begin + s), mi.Float(dr.select(length > 0, 1 / pdf, 0))
+
+    def sample(u: Any) -> tuple[Any, Any]:
+        s = dr.select(u < 0.5, -dr.log(1 - 2 * u * lost) / rate, (2 * u - 1) * length)
+        s = dr.clip(s, 0, length)
+        pdf = 0.5 * rate * dr.exp(-rate * s) / lost + 0.5 / dr.maximum(length, 1e-300)
+        return mi.Float(begin + s), mi.Float(dr.select(length > 0, 1 / pdf, 0))
+
+    return sample

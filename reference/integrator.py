@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from reference.distances import equiangular, even_or_attenuated, position_of, reach
+from reference.distances import equiangular_or_attenuated, even_or_attenuated, position_of, reach
 from reference.fog_path import FogPath, bounded_path, fog_of, is_bounded, whole_path
 from scenes.errors import InputError
 from scenes.mitsuba_setup import mitsuba
@@ -17,34 +17,62 @@ from scenes.mitsuba_setup import mitsuba
 mi = mitsuba()
 import drjit as dr  # noqa: E402
 
-# A surface must not shade itself by the rounding of its own position; a point in the fog has less to fear.
+# A surface must not shade itself by the rounding of its own position; a point in the fog is on no surface.
 SURFACE_MARGIN = 1e-4
-FOG_MARGIN = 1e-5
+FOG_MARGIN = 0.0
 
 
 class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
-    r"""Single scattering by equiangular sampling (:monosp:`single_scattering`).
+    r"""Single scattering by stratified equiangular sampling (:monosp:`single_scattering`).
 
     .. pluginparameters::
 
-     * - (none)
-       - The integrator has no parameters: it takes one distance sample per light and ray, as many as the sampler gives.
+     * - distance_samples
+       - |int|
+       - Distances that are sampled for each ray and light, one in each of as many strata. (Default: 16)
+     * - light_share
+       - |float|
+       - Share of the way from a light over which its light is attenuated. Less than 1 is wrong, and the same as
+         Mitsuba's `volpath`, which stops :monosp:`ShadowEpsilon` short of the light. (Default: 1)
 
     The radiance of a ray is the sum of
 
     - `surface`: light that one reflection sends to the eye, attenuated on both legs; deterministic, since the
       lights have no extent;
     - `scattering`: light that the fog scatters once. The distance is sampled in proportion to 1 / d^2, d the distance
-      to the light (Kulla and Fajardo 2012, section 4), which leaves no singularity to the estimator; transmittance is
-      analytic and visibility a shadow ray. With the sampler `stratified` the distances of a pixel are stratified.
+      to the light (Kulla and Fajardo 2012, section 4), which leaves no singularity to the estimator, and in thick fog
+      part of the time in proportion to the transmittance of both legs; transmittance is analytic, for each channel,
+      and visibility a shadow ray.
 
-    Point, spot and directional lights are sampled, all of them for each ray. The sensor needs the medium that it is in,
-    as Mitsuba's own integrators need it. A medium is bounded by a shape with a `null` BSDF that has it as its interior.
-    AOVs hold the two parts.
+    AOVs hold the two parts. Point, spot and directional lights are sampled, all of them for each ray. The sensor needs
+    the medium that it is in, as Mitsuba's own integrators need it. A medium fills space, or is bounded by a shape with
+    a `null` BSDF that has it as its interior; a directional light needs one that is bounded. Where a pixel's rays go is
+    up to the film's filter and to the sampler.
+
+    .. tabs::
+        .. code-tab:: xml
+
+            <integrator type="single_scattering">
+                <integer name="distance_samples" value="64"/>
+            </integrator>
+
+        .. code-tab:: python
+
+            import reference.integrator  # registers the plugin
+            mi.load_dict({'type': 'single_scattering', 'distance_samples': 64})
     """
 
-    # share of the way to the light over which its light is attenuated; less only to imitate `volpath` (agreement.py)
-    light_share = 1.0
+    def __init__(self, props: Any) -> None:
+        super().__init__(props)
+        if mi.variant().startswith("scalar"):
+            # it would take a millisecond a sample there
+            raise ValueError("single_scattering needs an LLVM or CUDA variant; take `volpath` with max_depth = 2.")
+        self.distance_samples = props.get("distance_samples", 16)
+        self.light_share = props.get("light_share", 1.0)
+        if self.distance_samples < 1:
+            raise ValueError(f"distance_samples is {self.distance_samples}; use a positive number.")
+        if not 0 <= self.light_share <= 1:
+            raise ValueError(f"light_share is {self.light_share}; use a number from 0 to 1.")
 
     def sample(
         self, scene: Any, sampler: Any, ray: Any, medium: Any = None, active: Any = True
@@ -83,50 +111,89 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
             ds, weight = emitter.sample_direction(si, mi.Point2f(0.5), hit)
             lit, leg = self._leg(scene, ds, SURFACE_MARGIN, bounded, path.ends_in_fog, hit)
             value = bsdf.eval(mi.BSDFContext(), si, si.to_local(ds.d), lit)
-            radiance[lit] += value * weight * self._transmittance(fog, ray, path.fog_length + leg)
+            radiance[lit] += self._attenuated(value * weight, fog, ray, path.fog_length + leg)
         return radiance
 
-    def scattering(self, scene: Any, sampler: Any, ray: Any, path: FogPath, medium: Any, active: Any = True) -> Any:
-        """Airlight of one distance sample per light.
+    def scattering(
+        self,
+        scene: Any,
+        sampler: Any,
+        ray: Any,
+        path: FogPath,
+        medium: Any,
+        active: Any = True,
+        distance_samples: Any = None,
+    ) -> Any:
+        """Airlight, averaged over the strata of each light.
 
         Parameters
         ----------
-        sampler : Sampler            one number is taken per light
+        sampler : Sampler            one number is taken per light and stratum
         ray : Ray3f
         path : FogPath               of `ray`
         medium : Medium or None      the one that the camera is in
+        distance_samples : UInt32    strata, for each ray its own; by default the plugin's parameter
 
         Returns
         -------
         radiance : Spectrum
         """
-        radiance, fog, bounded = mi.Spectrum(0.0), fog_of(scene, medium), is_bounded(scene)
+        strata = mi.UInt32(self.distance_samples if distance_samples is None else distance_samples)
+        radiance = mi.Spectrum(0.0)
         for emitter in delta_emitters(scene):
-            t, inverse_pdf = self._distance(emitter, ray, path, fog, sampler.next_1d(active))
-            mei = self._interaction(fog, ray, t)
-            ds, weight = emitter.sample_direction(mei, mi.Point2f(0.5), active)
-            there, through_fog = active, t
-            if bounded:
-                # the plugin takes bodies that are not convex too, which a ray leaves and enters again
-                before = mi.Ray3f(ray)
-                before.maxt = t
-                so_far = bounded_path(scene, before, medium is not None, active)
-                there, through_fog = active & so_far.ends_in_fog, so_far.fog_length
-            lit, leg = self._leg(scene, ds, FOG_MARGIN, bounded, mi.Bool(True), there)
-            phase, _ = fog.phase_function().eval_pdf(mi.PhaseFunctionContext(None), mei, ds.d, lit)
-            sigma_s, _, _ = fog.get_scattering_coefficients(mei, lit)
-            through = self._transmittance(fog, ray, through_fog + leg)
-            radiance[lit] += sigma_s * phase * weight * through * inverse_pdf
+            distance = self._distances(scene, emitter, ray, path, medium)
+
+            def one_stratum(
+                number: Any, sampler: Any, total: Any, emitter: Any = emitter, distance: Any = distance
+            ) -> tuple[Any, Any, Any]:
+                # float64: a thousand strata leave float32 too few places in each
+                u = (mi.Float64(number) + mi.Float64(sampler.next_1d(active))) / mi.Float64(strata)
+                t, inverse_pdf = distance(u)
+                total += self.scattered(scene, emitter, ray, t, medium, active) * inverse_pdf
+                return number + 1, sampler, total
+
+            begin = (dr.zeros(mi.UInt32, dr.width(ray)), sampler, dr.zeros(mi.Spectrum, dr.width(ray)))
+            _, _, total = dr.while_loop(begin, lambda number, *_: active & (number < strata), one_stratum)
+            radiance += total / mi.Float(strata)
         return radiance
 
-    def _distance(self, emitter: Any, ray: Any, path: FogPath, fog: Any, u: Any) -> tuple[Any, Any]:
-        """Sample where the light is scattered: distance and inverse density [scene unit]."""
+    def scattered(self, scene: Any, emitter: Any, ray: Any, t: Any, medium: Any, active: Any = True) -> Any:
+        """Radiance per length that the fog at one distance sends to the eye, from one light.
+
+        Parameters
+        ----------
+        ray : Ray3f
+        t : Float                    distance from the ray's origin [scene unit]
+        medium : Medium or None      the one that the camera is in
+
+        Returns
+        -------
+        radiance : Spectrum    [1 / scene unit]
+        """
+        fog, bounded = fog_of(scene, medium), is_bounded(scene)
+        mei = self._interaction(fog, ray, t)
+        ds, weight = emitter.sample_direction(mei, mi.Point2f(0.5), active)
+        there, through_fog = active, t
+        if bounded:
+            # the plugin takes bodies that are not convex too, which a ray leaves and enters again
+            before = mi.Ray3f(ray)
+            before.maxt = t
+            so_far = bounded_path(scene, before, medium is not None, active)
+            there, through_fog = active & so_far.ends_in_fog, so_far.fog_length
+        lit, leg = self._leg(scene, ds, FOG_MARGIN, bounded, mi.Bool(True), there)
+        phase, _ = fog.phase_function().eval_pdf(mi.PhaseFunctionContext(None), mei, ds.d, lit)
+        sigma_s, _, _ = fog.get_scattering_coefficients(mei, lit)
+        return dr.select(lit, self._attenuated(sigma_s * phase * weight, fog, ray, through_fog + leg), 0)
+
+    def _distances(self, scene: Any, emitter: Any, ray: Any, path: FogPath, medium: Any) -> Any:
+        """Sampler of where light is scattered: a number from 0 to 1 to distance and inverse density [scene unit]."""
+        fog = fog_of(scene, medium)
         begin, end = reach(emitter, ray, path.fog_end)
         begin, end = dr.clip(begin, path.fog_begin, path.fog_end), dr.clip(end, path.fog_begin, path.fog_end)
-        if mi.has_flag(emitter.flags(), mi.EmitterFlags.DeltaPosition):
-            return equiangular(ray, begin, end, position_of(emitter, ray), u)
         _, _, sigma_t = fog.get_scattering_coefficients(self._interaction(fog, ray, mi.Float(0.0)))
-        return even_or_attenuated(begin, end, dr.min(sigma_t), u)
+        if mi.has_flag(emitter.flags(), mi.EmitterFlags.DeltaPosition):
+            return equiangular_or_attenuated(ray, begin, end, position_of(emitter, ray), dr.min(sigma_t))
+        return even_or_attenuated(begin, end, dr.min(sigma_t))
 
     def _leg(self, scene: Any, ds: Any, margin: float, bounded: bool, in_fog: Any, active: Any) -> tuple[Any, Any]:
         """Whether a light sees a point, and over what length its light is attenuated on the way [scene unit]."""
@@ -149,13 +216,16 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
         mei.medium = mi.MediumPtr(medium)
         return mei
 
-    def _transmittance(self, medium: Any, ray: Any, distance: Any) -> Any:
+    def _attenuated(self, radiance: Any, medium: Any, ray: Any, distance: Any) -> Any:
+        """What the medium leaves of a radiance over a distance."""
         _, _, sigma_t = medium.get_scattering_coefficients(self._interaction(medium, ray, mi.Float(0.0)))
-        return dr.exp(-sigma_t * distance)
+        # in two steps: float32 has no e^(-88), but a strong light has something left there
+        half = dr.exp(-0.5 * sigma_t * distance)
+        return radiance * half * half
 
     def to_string(self) -> str:
         """Name the plugin."""
-        return "SingleScattering[]"
+        return f"SingleScattering[distance_samples = {self.distance_samples}, light_share = {self.light_share}]"
 
 
 def eye_path(scene: Any, ray: Any, medium: Any, active: Any = True) -> FogPath:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from functools import cache
 from typing import Any
 
@@ -16,13 +17,18 @@ VARIANTS = ("cuda_ad_rgb", "llvm_ad_rgb", "scalar_rgb")
 def mitsuba() -> Any:
     """Return the `mitsuba` module with its variant set.
 
-    The first of `VARIANTS` that works is taken; AIRLIGHT_MITSUBA_VARIANT asks for one by name.
+    A script that has set one before keeps it, and its LLVM library. Otherwise the first of `VARIANTS` that works is
+    taken; AIRLIGHT_MITSUBA_VARIANT asks for one by name.
 
     Raises
     ------
     InputError
         Mitsuba cannot be imported, or the variant that was asked for is unknown or does not work here.
     """
+    if "mitsuba" in sys.modules and (chosen := sys.modules["mitsuba"].variant()):
+        if chosen not in VARIANTS:
+            raise InputError(f"Mitsuba's variant is {chosen}; set one of {', '.join(VARIANTS)}.")
+        return sys.modules["mitsuba"]
     try:
         llvm = prepare()
         import mitsuba as mi
