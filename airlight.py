@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from gpu_impl.techniques import Technique
     from reference.convergence import Progress
     from reference.estimate import Reference
+    from reference.estimators import PixelFilter
     from scenes.model import Scene
 
 __all__ = ["InputError", "compare", "load", "milliseconds", "read", "reference", "render", "save"]
@@ -101,14 +102,21 @@ def reference(
     rel_error: float = 0.005,
     time_limit: float = 600.0,
     report: Callable[[Progress], None] | None = None,
+    *,
+    percentile: float = 95.0,
+    sample_limit: int | None = None,
+    pixel_filter: PixelFilter = "centre",
 ) -> Reference:
-    """Estimate a scene's reference in Mitsuba, or take it from the cache.
+    """Estimate a scene's reference in Mitsuba, or take it from the cache, or go on with one that was stopped.
 
     Parameters
     ----------
-    rel_error : standard error to reach, relative to the pixel, at the 95th percentile of lit pixels
+    rel_error : standard error to reach, relative to the pixel, at a percentile of lit pixels
     time_limit : [s]; where it is reached first, the reference says how far it got
     report : called after each pass, for a progress bar
+    percentile : which one
+    sample_limit : samples a pixel, on average over the image; the reference says so where it is reached first
+    pixel_filter : "centre" for rays through pixel centres, as techniques are drawn, or "box" for averages over pixels
 
     Returns
     -------
@@ -124,7 +132,7 @@ def reference(
     from reference.estimate import estimate_reference
     from reference.goal import Goal
 
-    return estimate_reference(scene, Goal(rel_error, time_limit), report)
+    return estimate_reference(scene, Goal(rel_error, time_limit, percentile, sample_limit), report, pixel_filter)
 
 
 def compare(

@@ -5,31 +5,31 @@ from __future__ import annotations
 import sys
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Literal
 
 import typer
 
+from experiments.benchmark_cli import benchmark_app
+from experiments.agree_cli import agree
+from experiments.cache_cli import cache_app
 from experiments.mathematics_cli import atlas, audit, quadrature, spectra
 from experiments.meshes_cli import meshes_app
 from experiments.options import (
     SCENE_HELP,
     TYPER_STYLE,
     Parameters,
+    Percentile,
     RelError,
+    SampleLimit,
     SceneArgument,
     Size,
     TimeLimit,
     given_beside,
     parse_parameters,
 )
+from experiments.termination import terminated_cleanly
 from reference.goal import Goal
 from scenes.errors import InputError
-
-if TYPE_CHECKING:
-    from scenes.model import Scene
-
-# volpath's pixels are noisy; its image mean is known to some 0.03 % by then
-CHECK_GOAL = Goal(rel_error=0.05, time_limit=30.0)
 
 app = typer.Typer(
     name="airlight",
@@ -37,6 +37,8 @@ app = typer.Typer(
     **TYPER_STYLE,
 )
 app.add_typer(meshes_app)
+app.add_typer(cache_app)
+app.add_typer(benchmark_app)
 
 
 def main() -> None:
@@ -163,41 +165,44 @@ def reference(
     parameter: Parameters = None,
     size: Size = None,
     rel_error: RelError = 0.005,
+    percentile: Percentile = 95.0,
     time_limit: TimeLimit = 600.0,
-    check: Annotated[
-        bool, typer.Option("--check", help="Estimate the scene by volpath too and compare the means.")
-    ] = False,
+    sample_limit: SampleLimit = None,
+    pixel_filter: Annotated[
+        Literal["centre", "box"], typer.Option(help="Rays through pixel centres, or averages over pixels.")
+    ] = "centre",
 ) -> None:
     """Estimate a scene's reference in Mitsuba and write it with its standard error.
+
+    It is kept in the cache. One that was stopped, by a limit or by Ctrl-C, goes on where it was when it is asked for
+    again.
 
     Example: airlight reference sphere --size 256 256 --rel-error 0.005 --out sphere.exr
     """
     import airlight
     from experiments.console import say
     from experiments.exr import check_writable
-    from experiments.terminal import TerminalWatcher, announce_reference, announce_scene, announce_variant
-    from scenes.mitsuba_setup import mitsuba
+    from experiments.terminal import TerminalWatcher, announce_reference, announce_scene, announce_variant, told
 
     # refused before the scene is loaded
-    Goal(rel_error, time_limit)
+    Goal(rel_error, time_limit, percentile, sample_limit)
     check_writable(out, ".exr")
     loaded = airlight.load(scene, size, **parse_parameters(parameter))
     announce_scene(loaded)
     announce_variant()
-    if check and mitsuba().variant() == "scalar_rgb":
-        raise InputError("--check compares with volpath, and in scalar_rgb the reference is volpath; leave it out.")
-    with TerminalWatcher(rel_error) as watcher:
-        result = airlight.reference(loaded, rel_error, time_limit, watcher.reference)
+    with terminated_cleanly(), TerminalWatcher(rel_error) as watcher:
+        result = airlight.reference(
+            loaded,
+            rel_error,
+            time_limit,
+            watcher.reference,
+            percentile=percentile,
+            sample_limit=sample_limit,
+            pixel_filter=pixel_filter,
+        )
     announce_reference(result)
     airlight.save(out, loaded, result)
-    estimate = result.estimate
-    source = "from the cache" if result.from_cache else f"{estimate.seconds:.1f} s"
-    say(
-        f"{out}: {loaded.name}, relative standard error {estimate.rel_error:.3%} at the 95th percentile, "
-        f"{estimate.passes} passes, {source}"
-    )
-    if check:
-        _check_against_volpath(loaded)
+    say(f"{out}: {loaded.name}, {told(result)}")
 
 
 @app.command()
@@ -258,22 +263,5 @@ def run(
     say(f"Results: {folder.resolve()}")
 
 
-for command in (audit, atlas, quadrature, spectra):
+for command in (agree, audit, atlas, quadrature, spectra):
     app.command()(command)
-
-
-def _check_against_volpath(scene: Scene) -> None:
-    from experiments.console import say
-    from experiments.terminal import TerminalWatcher
-    from reference.agreement import LARGEST_Z, check_against_volpath
-
-    with TerminalWatcher(CHECK_GOAL.rel_error) as watcher:
-        check = check_against_volpath(scene, CHECK_GOAL, watcher.reference)
-    test = check.test
-    say(
-        f"volpath's image mean differs by {test.difference:+.4%} with a standard error of {test.standard_error:.4%}: "
-        f"z = {test.z:+.2f}, {'agrees' if test.agrees else 'does NOT agree'} (|z| < {LARGEST_Z:g}). Allowed for: "
-        f"volpath stops short of a light, which brightens it by {check.shift:+.4%} here."
-    )
-    if not test.agrees:
-        raise typer.Exit(1)

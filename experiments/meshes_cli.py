@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from experiments.options import TYPER_STYLE
+from experiments.termination import terminated_cleanly
 from scenes.errors import InputError
 
 if TYPE_CHECKING:
@@ -63,24 +61,9 @@ def fetch(
     # the terms come before the bytes
     for name in chosen:
         say(f"{name}: {MESHES[name].what}. Credit: {MESHES[name].credit}. Licence: {MESHES[name].licence}.")
-    with _terminated_cleanly(), FetchWatcher() as watcher:
+    with terminated_cleanly(), FetchWatcher() as watcher:
         for mesh in fetch(chosen, watcher):
             say(_told(mesh))
-
-
-@contextmanager
-def _terminated_cleanly() -> Iterator[None]:
-    """Let SIGTERM end the program by an exception, so that what was begun is removed; by default nothing would be."""
-
-    def end(number: int, _: object) -> None:
-        # the exit code by which shells know a signal
-        raise SystemExit(128 + number)
-
-    before = signal.signal(signal.SIGTERM, end)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def _told(mesh: Fetched) -> str:

@@ -37,6 +37,10 @@ RelError = Annotated[
         help="Relative standard error to reach, at the 95th percentile of lit pixels of the scattering layer."
     ),
 ]
+Percentile = Annotated[float, typer.Option(help="Percentile of the lit pixels at which that error has to be reached.")]
+SampleLimit = Annotated[
+    int | None, typer.Option(help="Samples a pixel, on average over the image, after which the reference stops.")
+]
 TimeLimit = Annotated[
     float, typer.Option(help="Seconds after which the reference stops where it is; 8 passes are always made.")
 ]

@@ -112,16 +112,22 @@ def describe_frame(frame: Frame) -> dict[str, str]:
 
 
 def describe_reference(reference: Reference) -> dict[str, str]:
-    """Metadata of what estimated a reference, its seeds included: pass k of the estimate has seed k."""
+    """Metadata of what estimated a reference, its seeds included: pass k of the estimate has seed k.
+
+    The samples of a pass are a mean: each pixel takes those that the plan for `planned_for` gives it.
+    """
     estimate, recipe = reference.estimate, reference.recipe
     return {
         "estimator": f"{recipe['estimator']} {recipe['estimator_version']}",
         "variant": recipe["variant"],
         "pixel_filter": reference.pixel_filter,
         "passes": str(estimate.passes),
-        "samples_per_pass": str(recipe["samples_per_pass"]),
+        "samples_per_pass": f"{float(estimate.samples.mean()):.6g}",
+        "planned_for": f"{estimate.planned_for:.6g}",
         "seeds": f"0 to {estimate.passes - 1}",
         "rel_error": f"{estimate.rel_error:.6g}",
-        "rel_error_asked": f"{recipe['goal']['rel_error']:.6g}",
+        "rel_error_percentile": f"{reference.goal.percentile:.6g}",
+        "rel_error_asked": f"{reference.goal.rel_error:.6g}",
         "rel_error_reached": str(estimate.reached),
+        "stopped_by": estimate.stopped_by,
     }

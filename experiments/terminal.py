@@ -101,15 +101,31 @@ def _why_scalar(choice: LlvmChoice) -> str:
 
 
 def announce_reference(reference: Reference) -> None:
-    """Say so where a reference ran out of time, or could not be kept for the next time."""
-    if reference.not_kept:
-        warn(f"The reference is not kept for the next time: {reference.not_kept}")
-    estimate, asked = reference.estimate, reference.recipe["goal"]["rel_error"]
+    """Say so where a limit stopped a reference, or what became of its entry in the cache."""
+    for notice in reference.notices:
+        warn(notice)
+    estimate = reference.estimate
     if not estimate.reached:
+        limit = "time limit" if estimate.stopped_by == "time" else "sample limit"
         warn(
-            f"The reference stopped at its time limit with a relative standard error of "
-            f"{estimate.rel_error:.2%} where {asked:.2%} was asked for."
+            f"The reference stopped at its {limit} with a relative standard error of {estimate.rel_error:.2%} where "
+            f"{reference.goal.rel_error:.2%} was asked for; asked for again, it goes on from there."
         )
+
+
+def told(reference: Reference) -> str:
+    """What a reference is and where it came from, as the end of a sentence."""
+    estimate, before = reference.estimate, reference.passes_before
+    if reference.from_cache:
+        source = "from the cache"
+    elif before:
+        source = f"{before} of them from the cache, {estimate.seconds:.1f} s in all"
+    else:
+        source = f"{estimate.seconds:.1f} s"
+    return (
+        f"relative standard error {estimate.rel_error:.3%} at the {reference.goal.percentile:g}th percentile, "
+        f"{estimate.passes} passes of {float(estimate.samples.mean()):.3g} samples a pixel, {source}"
+    )
 
 
 def results_table(rows: list[Row]) -> Table:

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 
 from reference import cache
-from reference.convergence import Estimate, Progress, converge
-from reference.estimators import Equiangular, FilmVolpath, default_estimator
-from reference.goal import Goal
+from reference.checks import check_scene
+from reference.convergence import Estimate, Progress, converge, relative_error
+from reference.estimators import Equiangular, FilmVolpath, PixelFilter
+from reference.goal import FEWEST_PASSES, Goal
 from reference.integrator import mi
+from reference.moments import BlackReferenceError, NotFiniteError
+from reference.why_black import why_black
+from reference.why_not_finite import why_not_finite
 from scenes.errors import InputError
 from scenes.model import Scene
 
 LAYERS = ("composite", "scattering", "surface")
-_ARRAYS = ("mean", "standard_error", "image_mean", "image_error")
+_ARRAYS = ("mean", "standard_error", "tile_mean", "tile_error", "image_mean", "image_error")
+# A plan for a looser goal has too few strata: to halve the error takes four times the passes, or about twice the
+# strata. So an estimate goes on towards a goal up to so much stricter than its plan, or than what it reached, and else
+# begins anew.
+STRICTER = 2.0
 
 
 @dataclass(frozen=True)
@@ -28,17 +36,27 @@ class Reference:
     Attributes
     ----------
     estimate : Estimate
-    recipe : dict          all that decides it: scene, estimator and version, variant, goal, Mitsuba's version
-    pixel_filter : str     "centre" or "box"
-    from_cache : bool
-    not_kept : str         why it could not be kept in the cache; empty where it is there
+    recipe : dict          all that decides a pass: scene, estimator and version, variant, Mitsuba's version
+    goal : Goal            what was asked for
+    passes_before : int    how many of the estimate's passes were in the cache; all where none had to be made
+    notices : tuple        sentences about the cache: an entry was damaged, or this one could not be kept
     """
 
     estimate: Estimate
     recipe: dict[str, Any]
-    pixel_filter: str
-    from_cache: bool
-    not_kept: str = ""
+    goal: Goal
+    passes_before: int = 0
+    notices: tuple[str, ...] = ()
+
+    @property
+    def from_cache(self) -> bool:
+        """Whether nothing had to be computed."""
+        return self.passes_before == self.estimate.passes
+
+    @property
+    def pixel_filter(self) -> str:
+        """Whether its rays go through pixel centres, "centre", or all over the pixels, "box"."""
+        return str(self.recipe["pixel_filter"])
 
     @property
     def scene_digest(self) -> str:
@@ -76,65 +94,110 @@ class Reference:
         """One line, for notebooks."""
         height, width = self.surface.shape[:2]
         estimate = self.estimate
+        limit = "" if estimate.reached else f", stopped by its {estimate.stopped_by} limit"
         return (
             f"<Reference {width} x {height}, relative standard error {estimate.rel_error:.2%} after "
-            f"{estimate.passes} passes{'' if estimate.reached else ', out of time'}>"
+            f"{estimate.passes} passes{limit}>"
         )
 
 
-def estimate_reference(scene: Scene, goal: Goal, report: Callable[[Progress], None] | None = None) -> Reference:
-    """Take the scene's reference from the cache, or estimate it and keep it there.
+def estimate_reference(
+    scene: Scene,
+    goal: Goal,
+    report: Callable[[Progress], None] | None = None,
+    pixel_filter: PixelFilter = "centre",
+) -> Reference:
+    """Take the scene's reference from the cache, go on with the one there, or estimate it; and keep it there.
+
+    An entry holds for every goal that it meets. One that was stopped, by a limit, by Ctrl-C or by a kill, goes on where
+    it was.
 
     Parameters
     ----------
     report : called after each pass, for a progress bar
+    pixel_filter : "centre" or "box"; without a usable LLVM it is always the box
 
     Raises
     ------
     InputError
-        The estimate is zero everywhere or not finite, or the cache's folder cannot be written. Where only its disk is
-        full, which shows after the work, the reference is returned all the same and says so.
+        The scene cannot be estimated, the estimate is zero everywhere or not finite, or the cache's folder cannot be
+        written. Where only its disk is full, which shows after the work, the reference is returned all the same and
+        says so.
     """
-    # the class says all that a cached reference has to agree with; Mitsuba's scene is made only for a new one
-    estimator = default_estimator()
-    recipe = _recipe(scene, estimator, goal)
-    if entry := cache.load(recipe):
-        return Reference(_unpack(*entry), recipe, estimator.pixel_filter, from_cache=True)
+    if mi.variant() == "scalar_rgb":
+        pixel_filter = "box"
+    recipe = _recipe(scene, pixel_filter)
+    notices: list[str] = []
+    not_kept: list[str] = []
+    entry = cache.load(recipe, notices.append)
+    start = _unpack(*entry) if entry else None
+    if start and _meets(start, goal):
+        start = replace(start, rel_error=_rel_error(start, goal), stopped_by="goal")
+        return Reference(start, recipe, goal, start.passes, tuple(notices))
+    if start and goal.rel_error * STRICTER < min(start.planned_for, _rel_error(start, goal)):
+        start = None
     cache.check_writable()
-    estimate = converge(estimator(scene), goal, report)
-    not_kept = ""
+    check_scene(scene)
+    estimator = FilmVolpath(scene) if mi.variant() == "scalar_rgb" else Equiangular(scene, pixel_filter=pixel_filter)
+
+    def keep(estimate: Estimate) -> None:
+        arrays, numbers = _pack(estimate)
+        told = {"scene_name": scene.name, "parameters": scene.parameters, "goal": asdict(goal)}
+        not_kept.clear()
+        try:
+            cache.store(recipe, arrays, numbers | told)
+        except InputError as error:
+            # a full disk is no reason to stop
+            not_kept.append(f"The reference is not kept for the next time: {error}")
+
     try:
-        cache.store(recipe, *_pack(estimate))
-    except InputError as error:
-        not_kept = str(error)
-    return Reference(estimate, recipe, estimator.pixel_filter, from_cache=False, not_kept=not_kept)
+        estimate = converge(estimator, goal, report, start, keep)
+    except BlackReferenceError as error:
+        raise InputError(f"{error} {why_black(scene)}") from None
+    except NotFiniteError as error:
+        raise InputError(why_not_finite(scene, error.layer, error.image)) from None
+    keep(estimate)
+    return Reference(estimate, recipe, goal, start.passes if start else 0, (*notices, *not_kept))
 
 
-def _recipe(scene: Scene, estimator: type[Equiangular] | type[FilmVolpath], goal: Goal) -> dict[str, Any]:
+def _recipe(scene: Scene, pixel_filter: PixelFilter) -> dict[str, Any]:
+    estimator = FilmVolpath if mi.variant() == "scalar_rgb" else Equiangular
     return {
         "scene": scene.digest,
         "size": [scene.camera.width, scene.camera.height],
         "estimator": estimator.name,
         "estimator_version": estimator.version,
-        "samples_per_pass": estimator.samples_per_pass,
+        "pixel_filter": pixel_filter,
         "variant": mi.variant(),
         "mitsuba": version("mitsuba"),
         "drjit": version("drjit"),
-        "goal": asdict(goal),
     }
+
+
+def _rel_error(estimate: Estimate, goal: Goal) -> float:
+    """Of the layer that decides; see `Estimator.layers`."""
+    return relative_error(estimate.mean["scattering"], estimate.standard_error["scattering"], goal.percentile)
+
+
+def _meets(estimate: Estimate, goal: Goal) -> bool:
+    return estimate.passes >= FEWEST_PASSES and _rel_error(estimate, goal) <= goal.rel_error
 
 
 def _pack(estimate: Estimate) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     arrays = {f"{kind}.{layer}": image for kind in _ARRAYS for layer, image in getattr(estimate, kind).items()}
-    return arrays, {
-        field.name: getattr(estimate, field.name) for field in fields(Estimate) if field.name not in _ARRAYS
+    numbers = {
+        field.name: getattr(estimate, field.name)
+        for field in fields(Estimate)
+        if field.name not in (*_ARRAYS, "samples")
     }
+    return arrays | {"samples": estimate.samples}, numbers | {"finished": estimate.reached}
 
 
 def _unpack(arrays: dict[str, np.ndarray], record: dict[str, Any]) -> Estimate:
     layers: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _ARRAYS}
     for name, image in arrays.items():
-        kind, layer = name.split(".")
-        layers[kind][layer] = image
-    numbers = {field.name: record[field.name] for field in fields(Estimate) if field.name not in _ARRAYS}
-    return Estimate(**layers, **numbers)  # type: ignore[arg-type]
+        kind, _, layer = name.partition(".")
+        if layer:
+            layers[kind][layer] = image
+    numbers = {field.name: record[field.name] for field in fields(Estimate) if field.name in record}
+    return Estimate(**layers, samples=arrays["samples"], **numbers)  # type: ignore[arg-type]

@@ -132,7 +132,7 @@ def test_a_reference_that_the_full_cache_cannot_keep_is_written_all_the_same(
     def full(*_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("reference.cache.np.savez", full)
+    monkeypatch.setattr("reference.cache.entry_file.write", full)
     result = airlight("reference", "empty", *SMALL, "--rel-error", "0.2", "--out", "r.exr")
     assert result.code == 0
     assert "The reference is not kept for the next time: " in result.err
