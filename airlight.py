@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from gpu_impl.techniques import Technique
     from reference.convergence import Progress
     from reference.estimate import Reference
-    from reference.estimators import PixelFilter
+    from reference.goal import PixelFilter
     from scenes.model import Scene
 
 __all__ = ["InputError", "compare", "load", "milliseconds", "read", "reference", "render", "save"]

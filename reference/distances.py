@@ -91,11 +91,13 @@ def equiangular_or_attenuated(
     def way(s: Any) -> Any:
         return dr.select(s > 0, s + dr.hypot(h, s), dr.square(h) / (dr.hypot(h, s) + dr.abs(s)))
 
-    w_a, rate = way(s_a), dr.maximum(mi.Float64(sigma_t), 1e-300)
+    w_a = way(s_a)
+    rate = mi.Float64(sigma_t)
+    rate = dr.maximum(rate, 1e-300)
     depth = rate * (way(s_b) - w_a)
     lost = dr.maximum(1 - dr.exp(-depth), 1e-300)
     # a piece of next to no depth is one on which the two densities are the same but for lost digits
-    share = dr.select((rate * dr.hypot(h, s_a) > THICK) & (depth > 1e-3), 0.5, 0)
+    share: Any = dr.select((rate * dr.hypot(h, s_a) > THICK) & (depth > 1e-3), 0.5, 0)
 
     def sample(u: Any) -> tuple[Any, Any]:
         attenuated = u < share
@@ -135,3 +137,30 @@ def even_or_attenuated(begin: Any, end: Any, sigma_t: Any) -> Callable[[Any], tu
         return mi.Float(begin + s), mi.Float(dr.select(length > 0, 1 / pdf, 0))
 
     return sample
+
+
+def shifted_strata(count: Any, shift: Any) -> Callable[[Any], tuple[Any, Any]]:
+    """Cut 0 to 1 into strata that a random number shifts.
+
+    Were the cuts at the same places in every pass, a shadow's edge close behind one would be met by few samples or by
+    none, and the passes would agree on a wrong mean: z of up to 18 after 32 of them, over a table of known answers.
+    All strata have one width but the first and the last, which share it.
+
+    Parameters
+    ----------
+    count : UInt32
+    shift : Float64    a number from 0 to 1
+
+    Returns
+    -------
+    stratum : callable    number of a stratum, UInt32, to its begin and end, Float64
+    """
+    # float64: a thousand strata leave float32 too few places in each
+    whole = mi.Float64(dr.maximum(count, 2) - 1)
+    shift = dr.select(count > 1, shift, 0)
+
+    def stratum(number: Any) -> tuple[Any, Any]:
+        begin = (mi.Float64(number) - shift) / whole
+        return dr.maximum(begin, 0), dr.minimum(begin + 1 / whole, 1)
+
+    return stratum

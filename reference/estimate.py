@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from reference import cache
-from reference.checks import check_scene
+from reference.checks.shut_in import check_scene
+from reference.checks.why_black import why_black
+from reference.checks.why_not_finite import why_not_finite
 from reference.convergence import Estimate, Progress, converge, relative_error
-from reference.estimators import Equiangular, FilmVolpath, PixelFilter
-from reference.goal import FEWEST_PASSES, Goal
+from reference.estimators import Equiangular, Estimator, FilmVolpath
+from reference.goal import FEWEST_PASSES, Goal, PixelFilter
 from reference.integrator import mi
 from reference.moments import BlackReferenceError, NotFiniteError
-from reference.why_black import why_black
-from reference.why_not_finite import why_not_finite
 from scenes.errors import InputError
 from scenes.model import Scene
 
@@ -138,7 +138,9 @@ def estimate_reference(
         start = None
     cache.check_writable()
     check_scene(scene)
-    estimator = FilmVolpath(scene) if mi.variant() == "scalar_rgb" else Equiangular(scene, pixel_filter=pixel_filter)
+    estimator: Estimator = (
+        FilmVolpath(scene) if mi.variant() == "scalar_rgb" else Equiangular(scene, pixel_filter=pixel_filter)
+    )
 
     def keep(estimate: Estimate) -> None:
         arrays, numbers = _pack(estimate)

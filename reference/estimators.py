@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any, Literal, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference.film_volpath import FilmVolpath
-from reference.goal import Goal
+from reference.goal import Goal, PixelFilter
 from reference.integrator import eye_path, mi
 from reference.mitsuba_scene import instantiate
 from reference.moments import Image
@@ -24,7 +24,6 @@ import drjit as dr  # after the integrator, which chose Dr.Jit's LLVM
 WAVEFRONT, SAMPLES = 1 << 22, 1 << 24
 # of pilot passes, far from those that count
 PILOT_SEED = 1 << 20
-PixelFilter = Literal["centre", "box"]
 
 
 class Estimator(Protocol):

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from reference.goal import Goal
+from reference.goal import Goal, PixelFilter
 from reference.integrator import mi
 from reference.mitsuba_scene import instantiate
 from reference.moments import Image
@@ -24,7 +24,7 @@ class FilmVolpath:
 
     name = "film_volpath"
     version = 2
-    pixel_filter = "box"
+    pixel_filter: PixelFilter = "box"
     layers: tuple[str, ...] = ("scattering", "surface")
     SAMPLES = 8
     # how the parameters end that are zero for a layer

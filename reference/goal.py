@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from scenes.errors import InputError
 
+PixelFilter = Literal["centre", "box"]
 # An error bar from few passes is itself uncertain. From 32, |z| > 4 by chance is a matter of 4e-4 (Student's t); from 8
 # it would be 5e-3, and every large image would seem to disagree somewhere.
 FEWEST_PASSES = 32

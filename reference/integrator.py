@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from reference.distances import equiangular_or_attenuated, even_or_attenuated, position_of, reach
+from reference.distances import equiangular_or_attenuated, even_or_attenuated, position_of, reach, shifted_strata
 from reference.fog_path import FogPath, bounded_path, fog_of, is_bounded, whole_path
 from scenes.errors import InputError
 from scenes.mitsuba_setup import mitsuba
@@ -128,7 +128,7 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
 
         Parameters
         ----------
-        sampler : Sampler            one number is taken per light and stratum
+        sampler : Sampler            one number is taken per light, and one per light and stratum
         ray : Ray3f
         path : FogPath               of `ray`
         medium : Medium or None      the one that the camera is in
@@ -139,22 +139,26 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
         radiance : Spectrum
         """
         strata = mi.UInt32(self.distance_samples if distance_samples is None else distance_samples)
-        radiance = mi.Spectrum(0.0)
+        radiance = dr.zeros(mi.Spectrum, dr.width(ray))
         for emitter in delta_emitters(scene):
             distance = self._distances(scene, emitter, ray, path, medium)
+            stratum = shifted_strata(strata, mi.Float64(sampler.next_1d(active)))
 
             def one_stratum(
-                number: Any, sampler: Any, total: Any, emitter: Any = emitter, distance: Any = distance
+                number: Any,
+                sampler: Any,
+                total: Any,
+                emitter: Any = emitter,
+                distance: Any = distance,
+                at: Any = stratum,
             ) -> tuple[Any, Any, Any]:
-                # float64: a thousand strata leave float32 too few places in each
-                u = (mi.Float64(number) + mi.Float64(sampler.next_1d(active))) / mi.Float64(strata)
-                t, inverse_pdf = distance(u)
-                total += self.scattered(scene, emitter, ray, t, medium, active) * inverse_pdf
-                return number + 1, sampler, total
+                begin, end = at(number)
+                t, inverse_pdf = distance(dr.lerp(begin, end, mi.Float64(sampler.next_1d(active))))
+                scattered = self.scattered(scene, emitter, ray, t, medium, active)
+                return number + 1, sampler, total + scattered * inverse_pdf * mi.Float(end - begin)
 
-            begin = (dr.zeros(mi.UInt32, dr.width(ray)), sampler, dr.zeros(mi.Spectrum, dr.width(ray)))
-            _, _, total = dr.while_loop(begin, lambda number, *_: active & (number < strata), one_stratum)
-            radiance += total / mi.Float(strata)
+            state = (dr.zeros(mi.UInt32, dr.width(ray)), sampler, radiance)
+            _, _, radiance = dr.while_loop(state, lambda number, *_: active & (number < strata), one_stratum)
         return radiance
 
     def scattered(self, scene: Any, emitter: Any, ray: Any, t: Any, medium: Any, active: Any = True) -> Any:

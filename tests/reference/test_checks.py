@@ -9,7 +9,7 @@ import pytest
 import trimesh
 from scene_files import POINT, point, sphere, spot, write_scene
 
-from reference.checks import _cuts_the_view, check_scene
+from reference.checks.shut_in import _cuts_the_view, check_scene
 from reference.estimators import Equiangular
 from scenes.catalogue import shipped
 from scenes.errors import InputError

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from reference.checks import _meet_square
-from reference.solids import closed_parts
+from reference.checks.solids import closed_parts
 from scenes.loader import load
 from scenes.model import Material, Mesh
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scene_files import POINT, point, spot, write_scene
 
+from reference.checks.why_black import why_black
+from reference.checks.why_not_finite import why_not_finite
 from reference.estimators import Equiangular
 from reference.integrator import mi
-from reference.why_black import why_black
-from reference.why_not_finite import why_not_finite
 from scenes.loader import load
 from scenes.model import Scene
 
@@ -116,6 +116,12 @@ def test_a_thin_ball_of_fog_lets_light_through(tmp_path: Path) -> None:
     assert "no reason was found" in why_black(scene)
 
 
+def test_a_light_beyond_float32s_squares_is_black(tmp_path: Path) -> None:
+    scene = write_scene(tmp_path, size=(9, 9), emitters=point(1e20, 0, 0))
+    assert not airlight_of(scene).any()
+    assert "optical depth of at least 1e+19" in why_black(scene)
+
+
 def test_no_reason_is_made_up_for_a_scene_that_is_lit(others: Path) -> None:
     for scene in (load("sphere", size=(16, 16)), load(others / "sun_in_a_box.xml", size=(16, 16))):
         assert "no reason was found" in why_black(scene)
@@ -134,7 +140,6 @@ def test_a_pixel_that_looks_into_the_light_is_named(tmp_path: Path) -> None:
     ("settings", "reason"),
     [
         ({"emitters": point(0, 1, 0, "<float name='intensity' value='3e38'/>")}, "intensity is 3e+38"),
-        ({"emitters": point(1e20, 0, 0)}, "the distance of a light from the origin is 1e+20"),
         ({"sigma_t": fog("3e38")}, "sigma_t is 3e+38"),
     ],
 )
@@ -143,6 +148,12 @@ def test_numbers_that_float32_cannot_multiply_are_named(settings: dict, reason: 
     image = airlight_of(scene)
     assert not np.isfinite(image).all()
     assert reason in why_not_finite(scene, "scattering", image)
+
+
+def test_a_light_beyond_float32s_squares_is_black(tmp_path: Path) -> None:
+    scene = write_scene(tmp_path, size=(9, 9), emitters=point(1e20, 0, 0))
+    assert not airlight_of(scene).any()
+    assert "optical depth of at least 1e+19" in why_black(scene)
 
 
 def test_no_reason_is_made_up_for_pixels_that_look_elsewhere(tmp_path: Path) -> None:

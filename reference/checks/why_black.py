@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.deterministic.ray_spans import Array, Rays, chord
+from reference.deterministic.scattered_light import ScatteredLight
+from reference.deterministic.shadow_rays import ShadowRays
 from reference.integrator import mi
-from reference.ray_spans import Array, Rays, chord
-from reference.scattered_light import ScatteredLight
-from reference.shadow_rays import ShadowRays
 from scenes.model import Light, Scene
 
 # places that are looked at for each light: so many rays, and so many places on each

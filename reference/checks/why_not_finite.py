@@ -55,6 +55,4 @@ def _lengths_and_strengths(scene: Scene) -> Iterator[tuple[str, float]]:
     yield "the distance of the camera from the origin", float(np.linalg.norm(scene.camera.origin))
     yield "sigma_t", float(scene.medium.sigma_t.max())
     for light in scene.lights:
-        if light.kind != "directional":
-            yield "the distance of a light from the origin", float(np.linalg.norm(light.position))
         yield "a light's intensity", float(light.intensity.max())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.solids import Array, closed_parts
+from reference.checks.solids import Array, closed_parts
 from scenes.model import Camera, Scene
 from scenes.xml_nodes import Node
 
