@@ -31,11 +31,22 @@ if TYPE_CHECKING:
     from gpu_impl.frame import Frame
     from gpu_impl.techniques import Technique
     from reference.convergence import Progress
+    from reference.deterministic import LitIntervals
     from reference.estimate import Reference
     from reference.goal import PixelFilter
     from scenes.model import Scene
 
-__all__ = ["InputError", "compare", "load", "milliseconds", "read", "reference", "render", "save"]
+__all__ = [
+    "InputError",
+    "compare",
+    "lit_intervals",
+    "load",
+    "milliseconds",
+    "read",
+    "reference",
+    "render",
+    "save",
+]
 
 
 def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters: object) -> Scene:
@@ -106,6 +117,7 @@ def reference(
     percentile: float = 95.0,
     sample_limit: int | None = None,
     pixel_filter: PixelFilter = "centre",
+    deterministic: bool = False,
 ) -> Reference:
     """Estimate a scene's reference in Mitsuba, or take it from the cache, or go on with one that was stopped.
 
@@ -117,6 +129,7 @@ def reference(
     percentile : which one
     sample_limit : samples a pixel, on average over the image; the reference says so where it is reached first
     pixel_filter : "centre" for rays through pixel centres, as techniques are drawn, or "box" for averages over pixels
+    deterministic : ray casting and quadrature instead of samples, through pixel centres; goals and limits are idle
 
     Returns
     -------
@@ -129,10 +142,33 @@ def reference(
     InputError
         The goal cannot be meant, the estimate is zero everywhere or not finite, or the cache cannot be written.
     """
-    from reference.estimate import estimate_reference
+    from reference.estimate import deterministic_reference, estimate_reference
     from reference.goal import Goal
 
+    if deterministic:
+        if pixel_filter != "centre":
+            raise InputError("The deterministic reference is of pixel centres; leave the pixel filter out.")
+        return deterministic_reference(scene)
     return estimate_reference(scene, Goal(rel_error, time_limit, percentile, sample_limit), report, pixel_filter)
+
+
+def lit_intervals(scene: Scene) -> LitIntervals:
+    """Find which pieces of each pixel's ray each light reaches and sees, by ray casting in Mitsuba.
+
+    Returns
+    -------
+    LitIntervals
+        Flat arrays `pixel`, `light`, `begin` and `end` [scene unit along the pixel's ray], sorted, and `offsets` into
+        them; see `reference.deterministic`.
+
+    Raises
+    ------
+    InputError
+        There is no usable LLVM, without which rays are too slow.
+    """
+    from reference.deterministic import lit_intervals as find
+
+    return find(scene)
 
 
 def compare(

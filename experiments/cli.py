@@ -9,8 +9,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from experiments.benchmark_cli import benchmark_app
 from experiments.agree_cli import agree
+from experiments.benchmark_cli import benchmark_app
 from experiments.cache_cli import cache_app
 from experiments.mathematics_cli import atlas, audit, quadrature, spectra
 from experiments.meshes_cli import meshes_app
@@ -171,6 +171,12 @@ def reference(
     pixel_filter: Annotated[
         Literal["centre", "box"], typer.Option(help="Rays through pixel centres, or averages over pixels.")
     ] = "centre",
+    deterministic: Annotated[
+        bool,
+        typer.Option(
+            "--deterministic", help="Ray casting and quadrature instead of samples; goals and limits are idle."
+        ),
+    ] = False,
 ) -> None:
     """Estimate a scene's reference in Mitsuba and write it with its standard error.
 
@@ -199,6 +205,7 @@ def reference(
             percentile=percentile,
             sample_limit=sample_limit,
             pixel_filter=pixel_filter,
+            deterministic=deterministic,
         )
     announce_reference(result)
     airlight.save(out, loaded, result)

@@ -124,7 +124,7 @@ def describe_reference(reference: Reference) -> dict[str, str]:
         "passes": str(estimate.passes),
         "samples_per_pass": f"{float(estimate.samples.mean()):.6g}",
         "planned_for": f"{estimate.planned_for:.6g}",
-        "seeds": f"0 to {estimate.passes - 1}",
+        "seeds": f"0 to {estimate.passes - 1}" if estimate.passes else "none",
         "rel_error": f"{estimate.rel_error:.6g}",
         "rel_error_percentile": f"{reference.goal.percentile:.6g}",
         "rel_error_asked": f"{reference.goal.rel_error:.6g}",

@@ -122,9 +122,12 @@ def told(reference: Reference) -> str:
         source = f"{before} of them from the cache, {estimate.seconds:.1f} s in all"
     else:
         source = f"{estimate.seconds:.1f} s"
+    at = f"at the {reference.goal.percentile:g}th percentile"
+    if not estimate.passes:
+        return f"deterministic, relative numerical error {estimate.rel_error:.1e} {at}, {source}"
     return (
-        f"relative standard error {estimate.rel_error:.3%} at the {reference.goal.percentile:g}th percentile, "
-        f"{estimate.passes} passes of {float(estimate.samples.mean()):.3g} samples a pixel, {source}"
+        f"relative standard error {estimate.rel_error:.3%} {at}, {estimate.passes} passes of "
+        f"{float(estimate.samples.mean()):.3g} samples a pixel, {source}"
     )
 
 

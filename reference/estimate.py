@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields, replace
 from importlib.metadata import version
 from typing import Any
@@ -14,6 +15,7 @@ from reference.checks.shut_in import check_scene
 from reference.checks.why_black import why_black
 from reference.checks.why_not_finite import why_not_finite
 from reference.convergence import Estimate, Progress, converge, relative_error
+from reference.deterministic import Deterministic
 from reference.estimators import Equiangular, Estimator, FilmVolpath
 from reference.goal import FEWEST_PASSES, Goal, PixelFilter
 from reference.integrator import mi
@@ -38,20 +40,17 @@ class Reference:
     estimate : Estimate
     recipe : dict          all that decides a pass: scene, estimator and version, variant, Mitsuba's version
     goal : Goal            what was asked for
-    passes_before : int    how many of the estimate's passes were in the cache; all where none had to be made
+    from_cache : bool      whether nothing had to be computed
+    passes_before : int    how many of the estimate's passes were in the cache
     notices : tuple        sentences about the cache: an entry was damaged, or this one could not be kept
     """
 
     estimate: Estimate
     recipe: dict[str, Any]
     goal: Goal
+    from_cache: bool = False
     passes_before: int = 0
     notices: tuple[str, ...] = ()
-
-    @property
-    def from_cache(self) -> bool:
-        """Whether nothing had to be computed."""
-        return self.passes_before == self.estimate.passes
 
     @property
     def pixel_filter(self) -> str:
@@ -94,6 +93,8 @@ class Reference:
         """One line, for notebooks."""
         height, width = self.surface.shape[:2]
         estimate = self.estimate
+        if not estimate.passes:
+            return f"<Reference {width} x {height}, deterministic, relative error {estimate.rel_error:.1e}>"
         limit = "" if estimate.reached else f", stopped by its {estimate.stopped_by} limit"
         return (
             f"<Reference {width} x {height}, relative standard error {estimate.rel_error:.2%} after "
@@ -126,44 +127,88 @@ def estimate_reference(
     """
     if mi.variant() == "scalar_rgb":
         pixel_filter = "box"
-    recipe = _recipe(scene, pixel_filter)
-    notices: list[str] = []
-    not_kept: list[str] = []
-    entry = cache.load(recipe, notices.append)
-    start = _unpack(*entry) if entry else None
+    estimator = FilmVolpath if mi.variant() == "scalar_rgb" else Equiangular
+    entry = _Entry(scene, _recipe(scene, estimator, pixel_filter), goal)
+    start = entry.load()
     if start and _meets(start, goal):
         start = replace(start, rel_error=_rel_error(start, goal), stopped_by="goal")
-        return Reference(start, recipe, goal, start.passes, tuple(notices))
+        return entry.reference(start, from_cache=True, passes_before=start.passes)
     if start and goal.rel_error * STRICTER < min(start.planned_for, _rel_error(start, goal)):
         start = None
-    cache.check_writable()
-    check_scene(scene)
-    estimator: Estimator = (
-        FilmVolpath(scene) if mi.variant() == "scalar_rgb" else Equiangular(scene, pixel_filter=pixel_filter)
-    )
+    entry.check()
+    made: Estimator = FilmVolpath(scene) if estimator is FilmVolpath else Equiangular(scene, pixel_filter=pixel_filter)
+    with _explained(scene):
+        estimate = converge(made, goal, report, start, entry.keep)
+    entry.keep(estimate)
+    return entry.reference(estimate, passes_before=start.passes if start else 0)
 
-    def keep(estimate: Estimate) -> None:
+
+def deterministic_reference(scene: Scene) -> Reference:
+    """Take the scene's reference without Monte Carlo from the cache, or compute it and keep it there.
+
+    Its errors are numerical ones; see `reference.deterministic`.
+
+    Raises
+    ------
+    InputError
+        As `estimate_reference`; or there is no usable LLVM, without which rays are too slow.
+    """
+    entry = _Entry(scene, _recipe(scene, Deterministic, "centre"), Goal())
+    if found := entry.load():
+        return entry.reference(found, from_cache=True)
+    entry.check()
+    with _explained(scene):
+        estimate = Deterministic(scene).estimate()
+    entry.keep(estimate)
+    return entry.reference(estimate)
+
+
+class _Entry:
+    """A reference's place in the cache, and what is to be said of it."""
+
+    def __init__(self, scene: Scene, recipe: dict[str, Any], goal: Goal) -> None:
+        self._scene, self._recipe, self._goal = scene, recipe, goal
+        self._damaged: list[str] = []
+        self._not_kept: list[str] = []
+
+    def load(self) -> Estimate | None:
+        entry = cache.load(self._recipe, self._damaged.append)
+        return _unpack(*entry) if entry else None
+
+    def check(self) -> None:
+        """Refuse what would fail: better before the work than after it."""
+        cache.check_writable()
+        check_scene(self._scene)
+
+    def keep(self, estimate: Estimate) -> None:
         arrays, numbers = _pack(estimate)
-        told = {"scene_name": scene.name, "parameters": scene.parameters, "goal": asdict(goal)}
-        not_kept.clear()
+        told = {"scene_name": self._scene.name, "parameters": self._scene.parameters, "goal": asdict(self._goal)}
+        self._not_kept.clear()
         try:
-            cache.store(recipe, arrays, numbers | told)
+            cache.store(self._recipe, arrays, numbers | told)
         except InputError as error:
             # a full disk is no reason to stop
-            not_kept.append(f"The reference is not kept for the next time: {error}")
+            self._not_kept.append(f"The reference is not kept for the next time: {error}")
 
+    def reference(self, estimate: Estimate, from_cache: bool = False, passes_before: int = 0) -> Reference:
+        notices = (*self._damaged, *self._not_kept)
+        return Reference(estimate, self._recipe, self._goal, from_cache, passes_before, notices)
+
+
+@contextmanager
+def _explained(scene: Scene) -> Iterator[None]:
+    """Say what of the scene makes its reference black or infinite."""
     try:
-        estimate = converge(estimator, goal, report, start, keep)
+        yield
     except BlackReferenceError as error:
         raise InputError(f"{error} {why_black(scene)}") from None
     except NotFiniteError as error:
         raise InputError(why_not_finite(scene, error.layer, error.image)) from None
-    keep(estimate)
-    return Reference(estimate, recipe, goal, start.passes if start else 0, (*notices, *not_kept))
 
 
-def _recipe(scene: Scene, pixel_filter: PixelFilter) -> dict[str, Any]:
-    estimator = FilmVolpath if mi.variant() == "scalar_rgb" else Equiangular
+def _recipe(
+    scene: Scene, estimator: type[Equiangular | FilmVolpath | Deterministic], pixel_filter: PixelFilter
+) -> dict[str, Any]:
     return {
         "scene": scene.digest,
         "size": [scene.camera.width, scene.camera.height],

@@ -163,9 +163,10 @@ def _told(record: Record | None) -> dict[str, Any]:
 def _present_versions() -> dict[str, Any]:
     """Versions that a recipe of today names; an estimator's under its own name."""
     # loads Mitsuba
-    from reference.estimators import Equiangular, FilmVolpath, Volpath
+    from reference.deterministic import Deterministic
+    from reference.estimators import Equiangular, FilmVolpath
 
-    estimators = {estimator.name: estimator.version for estimator in (Equiangular, FilmVolpath, Volpath)}
+    estimators = {estimator.name: estimator.version for estimator in (Deterministic, Equiangular, FilmVolpath)}
     return estimators | {package: version(package) for package in ("mitsuba", "drjit")}
 
 

@@ -7,17 +7,15 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.checks.why_not_finite import why_not_finite
 from reference.convergence import Estimate, relative_error
 from reference.deterministic.kinks import Stretches
-from reference.deterministic.lit_intervals import LitIntervals, search
+from reference.deterministic.lit_intervals import STEPS, LitIntervals, Search, search
 from reference.deterministic.piece_airlight import piece_airlight
 from reference.deterministic.ray_spans import Array, Rays
 from reference.deterministic.scattered_light import ScatteredLight
 from reference.deterministic.shadow_rays import ShadowRays
 from reference.estimators import Equiangular
-from reference.moments import Image, tiles
-from scenes.errors import InputError
+from reference.moments import Image, check_finite, tiles
 from scenes.model import Scene
 
 # of the pixels and channels at which the relative error is stated, as `Goal` does by default
@@ -42,6 +40,7 @@ class Deterministic:
     ----------
     scene : Scene
     light_share : float    of the way from a light over which its light is attenuated, as in `SingleScattering`
+    steps : tuple of int   between the probes of a ray; see `search`
     """
 
     name = "deterministic"
@@ -49,25 +48,25 @@ class Deterministic:
     pixel_filter = "centre"
     layers: tuple[str, ...] = ("scattering",)
 
-    def __init__(self, scene: Scene, light_share: float = 1.0) -> None:
-        self._scene, self._light_share = scene, light_share
+    def __init__(self, scene: Scene, light_share: float = 1.0, steps: tuple[int, ...] = STEPS) -> None:
+        self._scene, self._light_share, self._steps = scene, light_share, steps
         self._shadow_rays = ShadowRays(scene)
         self._rays = Rays.of_camera(scene, self._shadow_rays.t_end())
 
     def estimate(self) -> Estimate:
-        """Both layers, with numerical errors in place of standard errors.
+        """Both layers, with numerical errors in place of standard errors, and the fewest probes of a pixel as its samples.
 
         Raises
         ------
-        InputError
+        NotFiniteError
             The camera looks straight into a light, where airlight is infinite.
         BlackReferenceError
             The airlight is zero everywhere.
         """
         begin = time.perf_counter()
-        mean, error = self.scattering()
-        if not np.isfinite(mean).all():
-            raise InputError(why_not_finite(self._scene, "scattering", mean))
+        found = self._search()
+        mean, error = self._scattering(found)
+        check_finite("scattering", mean)
         surface = Equiangular(self._scene, light_share=self._light_share).fixed()["surface"]
         means, errors = {"scattering": mean, "surface": surface}, {"scattering": error, "surface": 0 * surface}
         return Estimate(
@@ -77,7 +76,7 @@ class Deterministic:
             tile_error={layer: tiles(image) for layer, image in errors.items()},
             image_mean={layer: image.mean(axis=(0, 1)) for layer, image in means.items()},
             image_error={layer: image.mean(axis=(0, 1)) for layer, image in errors.items()},
-            samples=np.zeros(mean.shape[:2], np.uint32),
+            samples=found.steps.reshape(mean.shape[:2]),
             passes=0,
             planned_for=0.0,
             rel_error=relative_error(mean, error, PERCENTILE),
@@ -87,7 +86,12 @@ class Deterministic:
 
     def scattering(self) -> tuple[Image, Image]:
         """Airlight and its error, (H, W, 3) each."""
-        found = search(self._shadow_rays, self._rays, self._scene)
+        return self._scattering(self._search())
+
+    def _search(self) -> Search:
+        return search(self._shadow_rays, self._rays, self._scene, self._steps)
+
+    def _scattering(self, found: Search) -> tuple[Image, Image]:
         value, error = self._airlight(found.intervals, np.ones_like(found.open))
         before, _ = self._airlight(found.before, found.open)
         error[found.open] += np.abs(value - before)[found.open]

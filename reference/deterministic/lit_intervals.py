@@ -73,11 +73,13 @@ class Search:
     intervals : LitIntervals
     open : (pixels,) bool     the last doubling of the probes still changed the intervals
     before : LitIntervals     in those pixels with half as many probes, elsewhere the same
+    steps : (pixels,) uint32  between the probes of each ray in the end, for the light with the fewest
     """
 
     intervals: LitIntervals
     open: NDArray[np.bool_]
     before: LitIntervals
+    steps: NDArray[np.uint32]
 
 
 def lit_intervals(scene: Scene) -> LitIntervals:
@@ -108,24 +110,29 @@ def search(shadow_rays: ShadowRays, rays: Rays, scene: Scene, steps: tuple[int, 
     """
     shape = (scene.camera.height, scene.camera.width)
     still_open = np.zeros(shape[0] * shape[1], np.bool_)
+    fewest = np.full(still_open.size, steps[-1], np.uint32)
     found, found_before = [], []
     for light in scene.lights:
         prober = Prober(shadow_rays, rays, light)
         reached = np.flatnonzero(prober.reached)
         changes, finer = prober.changes(reached, steps[0])
         counts = np.bincount(changes.ray, minlength=still_open.size).reshape(shape)
+        taken_steps = np.full(still_open.size, steps[0], np.uint32)
         doubtful = _near(finer, shape) | (maximum_filter(counts, 3) > minimum_filter(counts, 3)).ravel()
         for finest in steps[1:]:
             taken, finer = prober.changes(np.flatnonzero(doubtful & prober.reached), finest)
+            taken_steps[doubtful] = finest
             changes = Changes.joined(changes[~doubtful[changes.ray]], taken)
             doubtful = _near(finer, shape)
         pieces = prober.lit_pieces(reached, changes)
         before = prober.lit_pieces(finer, prober.changes(finer, steps[-1] // 2)[0])
         still_open[finer] = True
+        # a light that cannot reach a ray hides nothing there
+        fewest = np.where(prober.reached, np.minimum(fewest, taken_steps), fewest)
         found.append(pieces)
         found_before.append(Pieces.joined(pieces[~np.isin(pieces.ray, finer)], before))
     now, then = (LitIntervals.gathered(still_open.size, pieces) for pieces in (found, found_before))
-    return Search(now, still_open, then)
+    return Search(now, still_open, then, fewest)
 
 
 def _near(chosen: Index, shape: tuple[int, int]) -> NDArray[np.bool_]:

@@ -26,7 +26,7 @@ WAVEFRONT = 1 << 22
 RESOLUTION = 2.0**-24
 # of the size of the scene: measured, by so much Embree's robust edges are wider than the surface's (1.0e-5 of a plate
 # of 80 in `half_plane`)
-BLUR = 2.0**-22
+BLUR = 2.0**-23
 # by so many blurs along the ray an edge may be elsewhere for a ray aside
 WIDENING = 32.0
 TINY = float(np.finfo(np.float64).tiny)
@@ -161,7 +161,7 @@ class Prober:
         An edge is known to the blur. Along the ray that is the more the flatter the ray meets the side of the shadow,
         of whose slopes in two directions one is known, and a ray a blur aside shows the other.
         """
-        blur, way = self._blur[changes.ray], self._way_to_light(changes.ray, place)
+        blur, way = self._blur[changes.ray] * self._lever(changes), self._way_to_light(changes.ray, place)
         across = np.linalg.norm(np.cross(way, self._rays.direction[changes.ray]), axis=-1)
         along = blur * np.linalg.norm(way, axis=-1) / np.maximum(across, TINY)
         wide = replace(
@@ -169,7 +169,18 @@ class Prober:
             low=np.maximum(changes.low - WIDENING * along, self._begin[changes.ray]),
             high=np.minimum(changes.high + WIDENING * along, self._last[changes.ray]),
         )
-        return np.hypot(self._bisected(wide, blur) - place, along)
+        moved = [np.abs(self._bisected(wide, side * blur) - place) for side in (-1, 1)]
+        return np.hypot(np.maximum(*moved), along)
+
+    def _lever(self, changes: Changes) -> Array:
+        """How much wider the edge's shadow is at each change than the edge itself, (n,)."""
+        dark = np.where(changes.goes_dark, changes.high, changes.low)
+        if self._light.kind == "directional" or not dark.size:
+            return np.ones(dark.size)
+        row = dr.arange(mi.UInt32, dark.size)
+        origin, direction = self._spread_rays(changes.ray, row)
+        occluder = np.array(self._shadow_rays.to_occluder(self._light, origin + direction * mi.Float64(dark)))
+        return np.linalg.norm(self._way_to_light(changes.ray, dark), axis=-1) / np.maximum(occluder, TINY)
 
     def _probes(self, which: Index, steps: int) -> tuple[Any, Any]:
         """Places, Float64 [scene unit], and whether the light sees them, Bool; ray by ray."""

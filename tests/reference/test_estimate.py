@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from reference import cache, convergence
-from reference.estimate import Reference, estimate_reference
+from reference.estimate import Reference, deterministic_reference, estimate_reference
 from reference.goal import FEWEST_IN_LIMIT, FEWEST_PASSES, Goal
 from scenes.errors import InputError
 from scenes.loader import load
@@ -116,6 +116,19 @@ def test_centres_and_boxes_are_two_references(scene: Scene) -> None:
     assert centre.standard_error("surface").max() == 0 < box.standard_error("surface").max()
     for pixel_filter in ("centre", "box"):
         assert estimate_reference(scene, Goal(0.1), pixel_filter=pixel_filter).from_cache
+
+
+def test_the_deterministic_reference_is_kept_beside_the_other(scene: Scene) -> None:
+    sampled = estimate_reference(scene, Goal(0.01))
+    first, again = deterministic_reference(scene), deterministic_reference(scene)
+    assert (first.from_cache, again.from_cache) == (False, True)
+    assert identical(first, again)
+    assert first.estimate.reached
+    assert (first.surface == sampled.surface).all()
+    error = np.hypot(first.standard_error("scattering"), sampled.standard_error("scattering"))
+    assert (np.abs(first.scattering - sampled.scattering) < 6 * error + 1e-5).all()
+    assert {entry.estimator for entry in cache.entries()} == {"deterministic", "equiangular"}
+    assert not any(entry.stale for entry in cache.entries())
 
 
 def test_whatever_decides_a_reference_makes_another_one() -> None:

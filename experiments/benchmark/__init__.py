@@ -1,0 +1,1 @@
+"""`airlight benchmark`: what the reference costs, beside Mitsuba's own estimator in the same run."""
