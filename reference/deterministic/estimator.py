@@ -54,7 +54,7 @@ class Deterministic:
         self._rays = Rays.of_camera(scene, self._shadow_rays.t_end())
 
     def estimate(self) -> Estimate:
-        """Both layers, with numerical errors in place of standard errors, and the fewest probes of a pixel as its samples.
+        """Both layers, with numerical errors in place of standard errors, and steps between probes as samples.
 
         Raises
         ------

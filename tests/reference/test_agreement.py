@@ -1,146 +1,146 @@
-"""The main estimator agrees with `volpath`, and what is wrong with it on purpose does not.
-
-`volpath` takes 32 passes of 16 samples: on sphere.xml at 64 x 64 its image mean is then known to 0.11 %.
-"""
+"""Three witnesses agree, the power says how well, and each says no where the scene is another one."""
 
 from __future__ import annotations
 
-import inspect
-import textwrap
-from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from reference import integrator
-from reference.agreement import LARGEST_Z, MeanTest, check_against_volpath, image_mean_test
-from reference.convergence import Estimate, converge
-from reference.estimators import Equiangular, Volpath
+from reference.agreement import volpath, witnesses
+from reference.agreement.comparison import compare
+from reference.agreement.measured import witness
+from reference.agreement.rim import rim_variance
+from reference.agreement.unseen import Unseen, unprobed_variance, unseen_variance
+from reference.agreement.volpath import FEWEST_SAMPLES, estimate_volpath, image_mean_power
+from reference.agreement.witnesses import Witnesses, call_witnesses, estimate_equiangular
+from reference.convergence import converge
+from reference.deterministic import Deterministic
+from reference.estimators import Volpath
 from reference.goal import Goal
-from reference.integrator import SingleScattering, mi
+from reference.integrator import mi
+from scenes.errors import InputError
 from scenes.loader import load
 from scenes.model import Scene
 
-# the fewest passes, however fast the machine is: the test's power must not depend on it
-SHORT = Goal(rel_error=0.999)
-
-
-def sphere(**parameters: object) -> Scene:
-    return load("sphere", size=(64, 64), **parameters)
-
-
-def main_estimate(scene: Scene, change: Callable[[Equiangular], object] = lambda _: None) -> Estimate:
-    # under volpath's convention, as check_against_volpath does it
-    estimator = Equiangular(scene, light_share=1 - mi.math.ShadowEpsilon)
-    change(estimator)
-    return converge(estimator, SHORT)
+SIZE = (24, 24)
+# of volpath's image mean, however fast the machine is
+POWER = 0.05
 
 
 @pytest.fixture(scope="module")
-def isotropic() -> Estimate:
-    return converge(Volpath(sphere()), SHORT)
+def testimony() -> Witnesses:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(witnesses, "IMAGE_POWER", POWER)
+        return call_witnesses(load("sphere", size=SIZE), 60.0)
 
 
-@pytest.fixture(scope="module")
-def henyey_greenstein() -> Estimate:
-    return converge(Volpath(sphere(phase="hg", g=0.6)), SHORT)
-
-
-def test_agreement(isotropic: Estimate) -> None:
-    test = image_mean_test(main_estimate(sphere()), isotropic)
-    assert test.agrees
-    assert abs(test.z) < LARGEST_Z
-    assert test.standard_error < 0.003
-
-
-def test_agreement_under_an_anisotropic_phase_function(henyey_greenstein: Estimate) -> None:
-    test = image_mean_test(main_estimate(sphere(phase="hg", g=0.6)), henyey_greenstein)
-    assert test.agrees
-    assert test.standard_error < 0.003
-
-
-# +2 % would move the mean by only 0.4 %, for thicker fog scatters more and lets less through
-@pytest.mark.parametrize(
-    "parameters", [{"sigma_t": 0.105}, {"albedo": 0.91}, {"intensity": 30.5}, {"phase": "hg"}], ids=str
-)
-def test_another_scene_does_not_agree(parameters: dict, isotropic: Estimate) -> None:
-    # measured z: 9.3, -7.0, -16, -134
-    assert not image_mean_test(main_estimate(sphere(**parameters)), isotropic).agrees
-
-
-def test_the_sign_of_g_matters(henyey_greenstein: Estimate) -> None:
-    assert not image_mean_test(main_estimate(sphere(phase="hg", g=-0.6)), henyey_greenstein).agrees
-
-
-def test_a_moved_light_does_not_agree(isotropic: Estimate) -> None:
-    def move(estimator: Equiangular) -> None:
-        parameters = mi.traverse(estimator.mitsuba.scene)
-        (key,) = [key for key in parameters.keys() if key.endswith(".position")]  # noqa: SIM118
-        parameters[key] = parameters[key] + mi.Vector3f(0, 0.05, 0)
-        parameters.update()
-
-    # measured z: 27
-    assert not image_mean_test(main_estimate(sphere(), move), isotropic).agrees
-
-
-def test_light_that_reaches_the_fog_unattenuated_does_not_agree(isotropic: Estimate) -> None:
-    def drop(estimator: Equiangular) -> None:
-        estimator.integrator.light_share = 0.0
-
-    assert not image_mean_test(main_estimate(sphere(), drop), isotropic).agrees
-
-
-SEES = "active & sees(scene, ds, margin, active)"
-
-
-@pytest.mark.parametrize(
-    ("method", "right", "wrong"),
-    [
-        ("scattering", "through_fog + leg", "leg"),  # the eye's leg is not attenuated
-        ("_leg", SEES, f"({SEES} if margin == SURFACE_MARGIN else mi.Bool(active))"),  # no shadows in fog
-        ("scattering", "* inverse_pdf", "* path.fog_length"),  # as if distances were uniform
-        ("surface", "path.fog_length + leg", "leg"),
-        ("_leg", SEES, f"({SEES} if margin == FOG_MARGIN else mi.Bool(active))"),  # no shadows on surfaces
-        ("surface", "+= value", "+= value / dr.maximum(si.to_local(ds.d).z, 0.01)"),  # no cosine
-    ],
-)
-def test_a_mistake_in_the_integrator_does_not_agree(
-    method: str, right: str, wrong: str, isotropic: Estimate, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    source = textwrap.dedent(inspect.getsource(getattr(SingleScattering, method)))
-    assert source.count(right) == 1
-    made: dict[str, Callable] = {}
-    exec(source.replace(right, wrong), vars(integrator), made)
-    monkeypatch.setattr(SingleScattering, method, made[method])
-    assert not image_mean_test(main_estimate(sphere()), isotropic).agrees
-
-
-def test_the_check_of_the_command_line() -> None:
-    check = check_against_volpath(load("sphere", size=(32, 32)), SHORT)
-    assert check.test.agrees
+def test_all_pairs_agree(testimony: Witnesses) -> None:
+    for comparison in testimony.comparisons():
+        assert comparison.agrees, [(v.test, v.largest, v.critical) for v in comparison.verdicts]
+    airlight, _, last = testimony.comparisons()
+    # measured: 0.014 %
+    assert airlight.verdicts[2].power < 1e-3
+    assert last.verdicts[2].power <= POWER
+    assert abs(airlight.difference) < 1e-4
+    assert testimony.unseen.has_shadow
+    assert testimony.unseen.has_surface
     # stopping short of the light brightens by e^(sigma_t d ShadowEpsilon) - 1: measured 3.1e-4
-    assert 1e-4 < check.shift < 1e-3
+    assert 1e-4 < testimony.convention_shift < 1e-3
 
 
-def synthetic(layers: dict[str, tuple[float, float]]) -> Estimate:
-    """An estimate of these image means and their errors."""
-    return Estimate(
-        mean={},
-        standard_error={},
-        image_mean={layer: np.full(3, mean) for layer, (mean, _) in layers.items()},
-        image_error={layer: np.full(3, error) for layer, (_, error) in layers.items()},
-        passes=32,
-        rel_error=0.1,
-        reached=True,
-        seconds=1.0,
-    )
+@pytest.mark.parametrize("parameters", [{"sigma_t": 0.101}, {"albedo": 0.901}, {"intensity": 30.06}], ids=str)
+def test_another_scene_does_not_agree(parameters: dict, testimony: Witnesses) -> None:
+    other = Deterministic(load("sphere", size=SIZE, **parameters), light_share=1 - mi.math.ShadowEpsilon).estimate()
+    spoilt = compare(testimony.composite[0], witness("other", other, surface=testimony.surface_as_volpath))
+    assert not spoilt.agrees
 
 
-def test_the_arithmetic_of_the_test() -> None:
-    ours = synthetic({"scattering": (1.5, 0.03), "surface": (0.5, 0.0)})
-    test = image_mean_test(ours, synthetic({"composite": (2.1, 0.04)}))
-    assert test.difference == pytest.approx(0.05)
-    assert test.standard_error == pytest.approx(0.025)
-    assert test.z == pytest.approx(2)
-    assert test.agrees
-    assert not MeanTest(difference=-0.1, standard_error=0.02).agrees
+@pytest.mark.parametrize("name", ["lamp_outside", "sun_in_a_box"])
+def test_all_pairs_agree_on_fog_in_a_body(name: str, others: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(witnesses, "REL_ERROR", 0.01)
+    monkeypatch.setattr(witnesses, "PROBES", (256, 2048))
+    monkeypatch.setattr(witnesses, "LONGEST", 3.0)
+    monkeypatch.setattr(witnesses, "FEWEST_STRATA", 64)
+    found = call_witnesses(load(others / f"{name}.xml", size=(12, 9)), 2.0).comparisons()
+    for comparison in found:
+        assert comparison.agrees, (comparison.name, [(v.test, v.largest) for v in comparison.verdicts])
+    assert found[0].verdicts[2].power < 0.01
+
+
+def test_a_ray_that_grazes_the_rim_of_a_spot_is_allowed_for() -> None:
+    scene = load("yeahright", size=(64, 64))
+    exact = Deterministic(scene, steps=(64, 512)).scattering()[0]
+    lit = exact > 0
+    share = np.sqrt(rim_variance(scene))[lit] / exact[lit]
+    # the rim is in doubt by a rounding of 1e-7, which is a millionth of nearly all pixels, and much where one grazes it
+    assert np.median(share) < 1e-5
+    assert 1e-3 < np.max(share) < 1
+    assert (rim_variance(load("empty", size=(8, 8))) == 0).all()
+
+
+def test_probes_that_are_closer_leave_less_unseen() -> None:
+    scene = load("sphere", size=SIZE)
+    coarse, fine = (Deterministic(scene, steps=steps).estimate() for steps in ((16, 32), (64, 128)))
+    # in doubt, and so with the second number, are those at the ball's shadow
+    assert set(np.unique(coarse.samples)) == {16, 32}
+    assert set(np.unique(fine.samples)) == {64, 128}
+    bounds = Unseen(scene)
+    allowed = np.sqrt(unprobed_variance(bounds.even, coarse.samples)) + coarse.standard_error["scattering"]
+    difference = np.abs(coarse.mean["scattering"] - fine.mean["scattering"])
+    assert (difference <= 2 * allowed + 2e-6 * fine.mean["scattering"]).all()
+    # in thin fog the estimator samples in the same variable, in thick fog it does not
+    np.testing.assert_allclose(bounds.even, bounds.equiangular, rtol=1e-6)
+    thick = Unseen(load("sphere", size=SIZE, sigma_t=5))
+    assert (thick.even > 1.5 * thick.equiangular).any()
+
+
+def test_surfaces_under_volpaths_convention_are_volpaths() -> None:
+    scene = load("sphere", size=(32, 32))
+    estimate, surface = estimate_equiangular(scene, "single_scattering_as_volpath")
+    theirs = converge(Volpath(scene, 64), Goal(0.999)).mean["composite"]
+    lit = surface.max(-1) > 0
+    # a surface that only one of the two saw lit would stand out from 2,048 samples' noise
+    assert lit.sum() > 200
+    assert (theirs[lit] > 0.5 * surface[lit]).all()
+    assert (theirs[~lit] < 1.5 * estimate.mean["scattering"][~lit] + 0.005).all()
+
+
+def test_volpath_goes_on_until_the_power_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(volpath, "MOST_SAMPLES", FEWEST_SAMPLES)
+    told: list[int] = []
+    scene = load("empty", size=(8, 8))
+    found = estimate_volpath(scene, 2e-2, 60.0, lambda progress: told.append(progress.passes))
+    assert image_mean_power(found) <= 2e-2
+    assert found.passes > 32
+    assert told[-1] == found.passes
+    assert sorted(told) == told
+    shorter = estimate_volpath(scene, 1e-6, 0.3)
+    assert image_mean_power(shorter) > 1e-6
+
+
+def test_no_sample_is_brighter_than_said() -> None:
+    scene: Scene = load("empty", size=(16, 16), phase="hg", g=0.6)
+    bounds = Unseen(scene)
+    assert not bounds.has_shadow
+    assert not bounds.has_surface
+    brightest = np.zeros((16, 16, 3))
+    estimator = Volpath(scene, 1)
+    for seed in range(200):
+        np.maximum(brightest, estimator.one_pass(seed)["composite"], out=brightest)
+    # 64 places a ray are looked at: measured 1.011 at most, and 1.000 in the median pixel
+    assert (brightest <= 1.02 * bounds.volpath).all()
+    assert np.median(brightest / bounds.volpath) > 0.9
+    half = unseen_variance(bounds.volpath, 200) ** 0.5
+    assert unseen_variance(bounds.volpath, 400) ** 0.5 == pytest.approx(half / 2)
+
+
+def test_scalar_variants_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Scalar:
+        @staticmethod
+        def variant() -> str:
+            return "scalar_rgb"
+
+    monkeypatch.setattr(witnesses, "mi", Scalar)
+    with pytest.raises(InputError, match="LLVM or CUDA"):
+        call_witnesses(load("empty", size=(8, 8)), 1.0)

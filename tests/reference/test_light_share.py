@@ -1,6 +1,6 @@
 """The share of the way to a light over which its light is attenuated, where the medium is bounded: in closed form.
 
-It is how the reference imitates `volpath`, which stops short of the light (reference/agreement.py).
+It is how the reference imitates `volpath`, which stops short of the light (reference/agreement/volpath.py).
 """
 
 from __future__ import annotations
