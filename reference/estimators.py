@@ -123,7 +123,7 @@ class Equiangular(PixelRays):
     """
 
     name = "equiangular"
-    version = 9
+    version = 10
     # with a box filter: rays of a pixel and pass, and strata of each
     BOX_RAYS, BOX_STRATA = 16, 4
 
