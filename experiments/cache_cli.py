@@ -101,14 +101,15 @@ def _table(entries: list[Entry]) -> Table:
             escape(f"{entry.scene or '-'}{given}"),
             f"{entry.estimator} {entry.estimator_version}, {entry.variant}" if entry.estimator else "-",
             " x ".join(map(str, entry.image_size)) if entry.image_size else "-",
-            *("-" if error is None else f"{error:.2%}" for error in (entry.rel_error, entry.asked)),
+            "-" if entry.rel_error is None else f"{100 * entry.rel_error:.3g}%",
+            "-" if entry.asked is None else f"{100 * entry.asked:.3g}% at {entry.percentile or 0:g}",
             _bytes(entry.size),
             f"{datetime.fromtimestamp(entry.last_used):%Y-%m-%d %H:%M}",
             _state(entry),
         )
     table.caption = (
-        "error, asked: relative standard error, 95th percentile of the lit pixels. Each byte is checked when a "
-        "reference is used, and by `airlight cache prune`."
+        "error: relative standard error at the percentile of the lit pixels for which it was asked, numerical error of "
+        "what is deterministic. Each byte is checked when a reference is used, and by `airlight cache prune`."
     )
     return table
 

@@ -112,11 +112,13 @@ def describe_frame(frame: Frame) -> dict[str, str]:
 
 
 def describe_reference(reference: Reference) -> dict[str, str]:
-    """Metadata of what estimated a reference, its seeds included: pass k of the estimate has seed k.
+    """Metadata of what estimated a reference, its seeds included.
 
-    The samples of a pass are a mean: each pixel takes those that the plan for `planned_for` gives it.
+    Pass k has seed k, or over a box seeds 2 k and 2 k + 1. The samples of a pass are a mean: each pixel takes those
+    that the plan for `planned_for` gives it.
     """
     estimate, recipe = reference.estimate, reference.recipe
+    seeds = estimate.passes * (2 if reference.pixel_filter == "box" else 1)
     return {
         "estimator": f"{recipe['estimator']} {recipe['estimator_version']}",
         "variant": recipe["variant"],
@@ -124,7 +126,7 @@ def describe_reference(reference: Reference) -> dict[str, str]:
         "passes": str(estimate.passes),
         "samples_per_pass": f"{float(estimate.samples.mean()):.6g}",
         "planned_for": f"{estimate.planned_for:.6g}",
-        "seeds": f"0 to {estimate.passes - 1}" if estimate.passes else "none",
+        "seeds": f"0 to {seeds - 1}" if seeds else "none",
         "rel_error": f"{estimate.rel_error:.6g}",
         "rel_error_percentile": f"{reference.goal.percentile:.6g}",
         "rel_error_asked": f"{reference.goal.rel_error:.6g}",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
 from typing import Literal
 
@@ -13,8 +14,9 @@ from numpy.typing import NDArray
 from reference.estimators import Estimator
 from reference.goal import FEWEST_IN_LIMIT, FEWEST_PASSES, Goal
 from reference.moments import Image, Moments, check_finite, relative_errors, tiles
+from scenes.errors import InputError
 
-# what a kill costs at most [s]
+# what a kill costs at most, and the pass that it comes in [s]
 KEEP_EVERY = 60.0
 StoppedBy = Literal["goal", "time", "samples", "interrupt", "exact"]
 
@@ -41,7 +43,7 @@ class Estimate:
     image_mean, image_error : dict of (3,)     the same of the image
     samples : (H, W)       taken of each pixel in a pass
     passes : int           0 for what is not sampled
-    planned_for : float    relative error for which `samples` were chosen
+    planned_for : float    relative error for which `samples` were chosen; larger than asked where a limit had no room
     rel_error : float      what was reached, at the goal's percentile
     stopped_by : str       "goal", "time" or "samples": which limit; "interrupt"; "exact" for what is not sampled
     seconds : float
@@ -81,10 +83,14 @@ class _Layer:
         made.image = Moments(start.image_mean[layer], start.image_error[layer], start.passes)
         return made
 
-    def add(self, sample: Image) -> None:
-        self.pixels.add(sample)
-        self.tiles.add(tiles(sample))
-        self.image.add(sample.mean(axis=(0, 1)))
+    def taking(self, sample: Image) -> _Layer:
+        """Return this layer with one more sample; this one stays as it is."""
+        made = _Layer()
+        made.pixels, made.tiles, made.image = copy(self.pixels), copy(self.tiles), copy(self.image)
+        made.pixels.add(sample)
+        made.tiles.add(tiles(sample))
+        made.image.add(sample.mean(axis=(0, 1)))
+        return made
 
 
 def converge(
@@ -104,6 +110,8 @@ def converge(
 
     Raises
     ------
+    InputError
+        The sample limit is less than the fewest passes take.
     NotFiniteError
         An estimate is infinite or not a number somewhere.
     BlackReferenceError
@@ -111,10 +119,11 @@ def converge(
     """
     begin = time.perf_counter()
     if start:
-        estimator.samples = start.samples
+        estimator.samples, planned_for = start.samples, start.planned_for
     else:
-        estimator.plan(goal)
-    run = _Run(estimator, goal, start, begin)
+        planned_for = estimator.plan(goal)
+        _check_sample_limit(estimator, goal)
+    run = _Run(estimator, goal, start, planned_for, begin)
     kept = time.perf_counter()
     try:
         while not (stopped_by := run.stopped_by()):
@@ -134,26 +143,30 @@ def converge(
 class _Run:
     """One run of passes, from nothing or from where another one stopped."""
 
-    def __init__(self, estimator: Estimator, goal: Goal, start: Estimate | None, begin: float) -> None:
+    def __init__(
+        self, estimator: Estimator, goal: Goal, start: Estimate | None, planned_for: float, begin: float
+    ) -> None:
         self._estimator, self._goal, self._start, self._begin = estimator, goal, start, begin
+        self._planned_for = planned_for
         self.passes = start.passes if start else 0
         self._layers = {layer: _Layer.going_on(layer, start) if start else _Layer() for layer in estimator.layers}
         self._fixed: dict[str, _Layer] = {}
         for layer, image in estimator.fixed().items():
             check_finite(layer, image)
-            self._fixed[layer] = _Layer()
-            for _ in range(2):  # twice the same has no error
-                self._fixed[layer].add(image)
+            # twice the same has no error
+            self._fixed[layer] = _Layer().taking(image).taking(image)
 
     @property
     def _seconds(self) -> float:
         return time.perf_counter() - self._begin
 
     def one_pass(self) -> None:
+        layers = {}
         for layer, image in self._estimator.one_pass(seed=self.passes).items():
             check_finite(layer, image)
-            self._layers[layer].add(image)
-        self.passes += 1
+            layers[layer] = self._layers[layer].taking(image)
+        # Ctrl-C may come at any time, and must find all of a pass or nothing of it
+        self._layers, self.passes = layers, self.passes + 1
 
     def rel_error(self) -> float:
         decisive = self._layers[self._estimator.layers[0]].pixels
@@ -194,10 +207,19 @@ class _Run:
             image_error={layer: of.image.standard_error for layer, of in layers},
             samples=self._estimator.samples,
             passes=self.passes,
-            planned_for=self._start.planned_for if self._start else self._goal.rel_error,
+            planned_for=self._planned_for,
             rel_error=self.rel_error(),
             stopped_by=stopped_by,
             seconds=self._seconds + (self._start.seconds if self._start else 0.0),
+        )
+
+
+def _check_sample_limit(estimator: Estimator, goal: Goal) -> None:
+    fewest = int(np.ceil(FEWEST_IN_LIMIT * estimator.samples.mean()))
+    if goal.sample_limit is not None and goal.sample_limit < fewest:
+        raise InputError(
+            f"The sample limit is {goal.sample_limit}, and the fewest passes take {fewest} samples a pixel; "
+            f"use at least {fewest}."
         )
 
 

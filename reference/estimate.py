@@ -25,9 +25,8 @@ from scenes.model import Scene
 
 LAYERS = ("composite", "scattering", "surface")
 _ARRAYS = ("mean", "standard_error", "tile_mean", "tile_error", "image_mean", "image_error")
-# A plan for a looser goal has too few strata: to halve the error takes four times the passes, or about twice the
-# strata. So an estimate goes on towards a goal up to so much stricter than its plan, or than what it reached, and else
-# begins anew.
+# To halve the error takes four times the passes, or about twice the strata. So an estimate goes on towards a goal up to
+# so much stricter than its plan, or than what it reached; else it begins anew, if the new plan is as much stricter.
 STRICTER = 2.0
 
 
@@ -95,7 +94,7 @@ class Reference:
         estimate = self.estimate
         if not estimate.passes:
             return f"<Reference {width} x {height}, deterministic, relative error {estimate.rel_error:.1e}>"
-        limit = "" if estimate.reached else f", stopped by its {estimate.stopped_by} limit"
+        limit = "" if estimate.reached else f", stopped ({estimate.stopped_by})"
         return (
             f"<Reference {width} x {height}, relative standard error {estimate.rel_error:.2%} after "
             f"{estimate.passes} passes{limit}>"
@@ -133,13 +132,23 @@ def estimate_reference(
     if start and _meets(start, goal):
         start = replace(start, rel_error=_rel_error(start, goal), stopped_by="goal")
         return entry.reference(start, from_cache=True, passes_before=start.passes)
-    if start and goal.rel_error * STRICTER < min(start.planned_for, _rel_error(start, goal)):
-        start = None
     entry.check()
     made: Estimator = FilmVolpath(scene) if estimator is FilmVolpath else Equiangular(scene, pixel_filter=pixel_filter)
     with _explained(scene):
+        before = start
+        if (
+            start
+            and STRICTER * goal.rel_error < min(start.planned_for, _rel_error(start, goal))
+            # a limit that had no room for the strata may have none again
+            and STRICTER * made.plan(goal) <= start.planned_for
+        ):
+            start = None
         estimate = converge(made, goal, report, start, entry.keep)
     entry.keep(estimate)
+    if before and not start and _rel_error(before, goal) < _rel_error(estimate, goal):
+        # what begins anew may be stopped before it is as good
+        stopped = replace(before, rel_error=_rel_error(before, goal), stopped_by=estimate.stopped_by)
+        return entry.reference(stopped, passes_before=before.passes)
     return entry.reference(estimate, passes_before=start.passes if start else 0)
 
 
@@ -153,7 +162,7 @@ def deterministic_reference(scene: Scene) -> Reference:
     InputError
         As `estimate_reference`; or there is no usable LLVM, without which rays are too slow.
     """
-    entry = _Entry(scene, _recipe(scene, Deterministic, "centre"), Goal())
+    entry = _Entry(scene, _recipe(scene, Deterministic, "centre"))
     if found := entry.load():
         return entry.reference(found, from_cache=True)
     entry.check()
@@ -166,14 +175,22 @@ def deterministic_reference(scene: Scene) -> Reference:
 class _Entry:
     """A reference's place in the cache, and what is to be said of it."""
 
-    def __init__(self, scene: Scene, recipe: dict[str, Any], goal: Goal) -> None:
+    def __init__(self, scene: Scene, recipe: dict[str, Any], goal: Goal | None = None) -> None:
         self._scene, self._recipe, self._goal = scene, recipe, goal
         self._damaged: list[str] = []
         self._not_kept: list[str] = []
+        self._is_another = False
 
     def load(self) -> Estimate | None:
-        entry = cache.load(self._recipe, self._damaged.append)
-        return _unpack(*entry) if entry else None
+        if not (entry := cache.load(self._recipe, self._damaged.append)):
+            return None
+        try:
+            return _unpack(*entry)
+        except (KeyError, TypeError):
+            # whole, and by somebody else
+            self._is_another = True
+            self._damaged.append("An entry of the cache holds no reference; it is estimated again.")
+            return None
 
     def check(self) -> None:
         """Refuse what would fail: better before the work than after it."""
@@ -181,8 +198,15 @@ class _Entry:
         check_scene(self._scene)
 
     def keep(self, estimate: Estimate) -> None:
+        """Keep it, unless what is there is better: begun anew towards a stricter goal, or made by another program."""
+        there = None if self._is_another else cache.load_record(self._recipe)
+        if there and not _takes_the_place(estimate, there):
+            return
+        self._is_another = False
         arrays, numbers = _pack(estimate)
-        told = {"scene_name": self._scene.name, "parameters": self._scene.parameters, "goal": asdict(self._goal)}
+        told = {"scene_name": self._scene.name, "parameters": self._scene.parameters}
+        if self._goal:
+            told["goal"] = asdict(self._goal)
         self._not_kept.clear()
         try:
             cache.store(self._recipe, arrays, numbers | told)
@@ -192,7 +216,16 @@ class _Entry:
 
     def reference(self, estimate: Estimate, from_cache: bool = False, passes_before: int = 0) -> Reference:
         notices = (*self._damaged, *self._not_kept)
-        return Reference(estimate, self._recipe, self._goal, from_cache, passes_before, notices)
+        return Reference(estimate, self._recipe, self._goal or Goal(), from_cache, passes_before, notices)
+
+
+def _takes_the_place(estimate: Estimate, there: dict[str, Any]) -> bool:
+    """Tell whether an estimate is to replace the one of a record: it is more of the same, or more accurate."""
+    same_plan = estimate.planned_for == there["planned_for"]
+    if same_plan and estimate.passes >= there["passes"]:
+        return True
+    known = estimate.passes >= min(FEWEST_PASSES, there["passes"])
+    return known and _rel_error(estimate, Goal(**there["goal"])) < there["rel_error"]
 
 
 @contextmanager

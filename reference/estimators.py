@@ -44,8 +44,8 @@ class Estimator(Protocol):
     layers: tuple[str, ...]
     samples: NDArray[np.uint32]
 
-    def plan(self, goal: Goal) -> None:
-        """Choose `samples`."""
+    def plan(self, goal: Goal) -> float:
+        """Choose `samples`, and return the relative error that they are for."""
 
     def fixed(self) -> dict[str, Image]:
         """Layers that need no sampling, (H, W, 3) each."""
@@ -134,10 +134,12 @@ class Equiangular(PixelRays):
         super().__init__(scene, rays * strata, rays, pixel_filter)
         self.integrator = mi.load_dict({"type": "single_scattering", "light_share": light_share})
 
-    def plan(self, goal: Goal) -> None:
+    def plan(self, goal: Goal) -> float:
         """Give each pixel the strata that it needs; over a box what varies from ray to ray decides, not they."""
-        if self.pixel_filter == "centre":
-            self.samples = plan_strata(lambda number: self._scattering(PILOT_SEED + number), goal)
+        if self.pixel_filter == "box":
+            return goal.rel_error
+        self.samples, planned_for = plan_strata(lambda number: self._scattering(PILOT_SEED + number), goal)
+        return planned_for
 
     def fixed(self) -> dict[str, Image]:
         """Direct light on surfaces: the lights have no extent, so one ray through the centre is exact."""
@@ -186,8 +188,9 @@ class Volpath(PixelRays):
         super().__init__(scene, samples, samples, "centre")
         self.integrator = mi.load_dict({"type": "volpath", "max_depth": 2})
 
-    def plan(self, goal: Goal) -> None:
+    def plan(self, goal: Goal) -> float:
         """Nothing: every pixel takes as many paths."""
+        return goal.rel_error
 
     def fixed(self) -> dict[str, Image]:
         """Nothing: every sample takes its own path."""

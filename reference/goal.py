@@ -24,7 +24,7 @@ class Goal:
     rel_error : float             standard error relative to the pixel ...
     percentile : float            ... at this percentile of lit pixels and channels
     time_limit : float            [s]; checked after each pass from the eighth on
-    sample_limit : int or None    samples a pixel, on average over the image, that are not exceeded
+    sample_limit : int or None    samples a pixel, on average over the image, that are not exceeded but by the pilot's
     """
 
     rel_error: float = 0.005

@@ -26,8 +26,8 @@ MARGIN = 1.25
 MOST_STRATA = 4096
 
 
-def plan_strata(one_pass: Callable[[int], Image], goal: Goal) -> NDArray[np.uint32]:
-    """Strata for each pixel with which the fewest passes meet the goal, (H, W).
+def plan_strata(one_pass: Callable[[int], Image], goal: Goal) -> tuple[NDArray[np.uint32], float]:
+    """Choose the strata of each pixel with which the fewest passes meet the goal.
 
     A pass with n strata is off by a / n^{3/2} where the integrand is smooth, and by b / n where a shadow's edge crosses
     the ray: twice the strata are worth more than twice the passes, whose error falls with the square root. So the
@@ -37,6 +37,11 @@ def plan_strata(one_pass: Callable[[int], Image], goal: Goal) -> NDArray[np.uint
     Parameters
     ----------
     one_pass : callable    number of a pilot pass to a picture, (H, W, 3), of PILOT_STRATA strata a pixel
+
+    Returns
+    -------
+    strata : (H, W)
+    planned_for : float    relative error that they are for; the goal's, or more where the limits have no room
 
     Raises
     ------
@@ -53,15 +58,19 @@ def plan_strata(one_pass: Callable[[int], Image], goal: Goal) -> NDArray[np.uint
     check_finite("scattering", pilot.mean)
     spread = relative_errors(pilot.mean, pilot.standard_error) * np.sqrt(PILOT_PASSES)
     # what holds for a pixel holds for the next, whose own pilot may have met no edge
-    spread = maximum_filter(np.nan_to_num(spread).max(axis=2), size=3)
+    spread, lit = maximum_filter(np.nan_to_num(spread).max(axis=2), size=3), pilot.mean.max(axis=2) > 0
     needed = MARGIN * PILOT_STRATA * spread / (goal.rel_error * np.sqrt(FEWEST_PASSES))
-    fewest = max(PILOT_STRATA, -np.log(MISSED) / (2 * goal.rel_error * FEWEST_PASSES))
+    fewest = np.clip(-np.log(MISSED) / (2 * goal.rel_error * FEWEST_PASSES), PILOT_STRATA, MOST_STRATA)
     # the goal is a percentile's: what lies beyond it need not be as accurate
-    most = min(float(np.percentile(needed, goal.percentile)), MOST_STRATA)
-    strata = np.clip(needed, fewest, max(most, fewest))
-    # the limits leave room for the passes that are always made, no more: what goes on from there should go on well
+    most = np.clip(np.percentile(needed[lit], goal.percentile), fewest, MOST_STRATA)
+    strata = np.clip(needed, fewest, most)
+    # the limits leave room for the passes that are always made, no more, so that what goes on from there goes on well
     mean = float(strata.mean())
     share = min(1.0, goal.time_limit / (FEWEST_IN_LIMIT * per_sample * mean))
     if goal.sample_limit:
         share = min(share, goal.sample_limit / (FEWEST_IN_LIMIT * mean))
-    return np.maximum(np.ceil(strata * share) if share == 1 else np.floor(strata * share), 1).astype(np.uint32)
+    strata = np.ceil(strata) if share == 1 else np.maximum(np.floor(strata * share), 1)
+    if goal.sample_limit and strata.mean() * FEWEST_IN_LIMIT > goal.sample_limit:
+        # what was raised to a whole stratum
+        strata = np.full_like(strata, goal.sample_limit // FEWEST_IN_LIMIT)
+    return strata.astype(np.uint32), goal.rel_error * max(1.0, mean / float(strata.mean()))

@@ -49,10 +49,11 @@ class EquiangularWitness(Equiangular):
         super().__init__(scene)
         self.integrator = mi.load_dict({"type": plugin})
 
-    def plan(self, goal: Goal) -> None:
+    def plan(self, goal: Goal) -> float:
         """Never fewer than FEWEST_STRATA."""
-        super().plan(goal)
+        planned_for = super().plan(goal)
         self.samples = np.maximum(self.samples, np.uint32(FEWEST_STRATA))
+        return planned_for
 
 
 @dataclass(frozen=True)

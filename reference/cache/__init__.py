@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reference.cache.listing import Entry, OtherFiles, entries, other_files
 from reference.cache.pruning import Removal, prune
-from reference.cache.store import check_writable, folder, key, load, store
+from reference.cache.store import check_writable, folder, key, load, load_record, store
 
 __all__ = [
     "Entry",
@@ -15,6 +15,7 @@ __all__ = [
     "folder",
     "key",
     "load",
+    "load_record",
     "other_files",
     "prune",
     "store",

@@ -38,6 +38,7 @@ class Entry:
     estimator, variant : str         which one, and the variant of Mitsuba under which it ran
     estimator_version : int
     rel_error, asked : float         relative standard error that was reached and that was asked for
+    percentile : float               of the lit pixels, at which both are; of what is not sampled there is no goal
     finished : bool                  whether it ended by itself; the others can go on
     """
 
@@ -54,6 +55,7 @@ class Entry:
     variant: str | None = None
     rel_error: float | None = None
     asked: float | None = None
+    percentile: float | None = None
     finished: bool | None = None
 
 
@@ -156,6 +158,7 @@ def _told(record: Record | None) -> dict[str, Any]:
         "variant": told.get("variant"),
         "rel_error": told.get("rel_error"),
         "asked": told.get("goal", {}).get("rel_error"),
+        "percentile": told.get("goal", {}).get("percentile"),
         "finished": told.get("finished"),
     }
 

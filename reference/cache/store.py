@@ -65,6 +65,15 @@ def load(recipe: Recipe, tell: Callable[[str], None] | None = None) -> tuple[Arr
     return arrays, record
 
 
+def load_record(recipe: Recipe) -> Record | None:
+    """Return an entry's record alone, or None where there is no whole one; its arrays are not read."""
+    try:
+        with _path(recipe).open("rb") as file:
+            return entry_file.read_record(file)
+    except (DamagedError, OldFormatError, OSError):
+        return None
+
+
 def check_writable() -> None:
     """Raise InputError where an entry could not be kept: better before the estimate than after it."""
     make_folder(folder(), CACHE_CURE)

@@ -44,7 +44,7 @@ class Deterministic:
     """
 
     name = "deterministic"
-    version = 1
+    version = 2
     pixel_filter = "centre"
     layers: tuple[str, ...] = ("scattering",)
 

@@ -9,6 +9,7 @@ from scipy import stats
 from reference import convergence
 from reference.convergence import Estimate, converge, relative_error
 from reference.goal import FEWEST_IN_LIMIT, FEWEST_PASSES, Goal
+from reference.moments import tiles
 from scenes.errors import InputError
 
 
@@ -24,8 +25,9 @@ class Synthetic:
         self.seeds: list[int] = []
         self.passes: list[np.ndarray] = []
 
-    def plan(self, goal: Goal) -> None:
+    def plan(self, goal: Goal) -> float:
         self.planned = goal
+        return goal.rel_error
 
     def fixed(self) -> dict[str, np.ndarray]:
         return {"surface": 0.5 * self.truth}
@@ -244,6 +246,34 @@ def test_an_estimate_that_was_there_already_takes_no_pass() -> None:
     again = Synthetic(an_image(), spread=0.2)
     assert converge(again, Goal(rel_error=0.03), start=first).passes == first.passes
     assert again.seeds == []
+
+
+def test_an_interrupt_inside_a_pass_leaves_nothing_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = 0
+
+    def interrupted(image: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        if calls == 13:
+            raise KeyboardInterrupt
+        return tiles(image)
+
+    monkeypatch.setattr(convergence, "tiles", interrupted)
+    kept: list[Estimate] = []
+    with pytest.raises(KeyboardInterrupt):
+        converge(Synthetic(an_image(), spread=0.2), Goal(rel_error=0.02), keep=kept.append)
+    monkeypatch.undo()
+    # two calls for the surface, so the eleventh pass was cut
+    assert kept[0].passes == 10
+    whole = converge(Synthetic(an_image(), spread=0.2), Goal(rel_error=0.02))
+    assert same(converge(Synthetic(an_image(), spread=0.2), Goal(rel_error=0.02), start=kept[0]), whole)
+
+
+def test_a_sample_limit_below_the_fewest_passes_is_refused() -> None:
+    estimator = Synthetic(an_image(), spread=0.2)
+    estimator.samples = np.full((16, 24), 64, np.uint32)
+    with pytest.raises(InputError, match=r"The sample limit is 100, .* use at least 512"):
+        converge(estimator, Goal(sample_limit=100))
 
 
 @pytest.mark.parametrize("signal", [KeyboardInterrupt, SystemExit])

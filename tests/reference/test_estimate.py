@@ -71,6 +71,41 @@ def test_a_much_stricter_goal_has_a_plan_of_its_own(scene: Scene) -> None:
     assert estimate_reference(scene, Goal(0.05)).passes_before == strict.estimate.passes
 
 
+def test_a_plan_that_a_limit_spoilt_is_made_anew(scene: Scene) -> None:
+    stopped = estimate_reference(scene, Goal(0.005, time_limit=1e-9)).estimate
+    assert (stopped.samples == 1).all()
+    assert stopped.planned_for > 2 * 0.005
+    whole = estimate_reference(scene, Goal(0.005))
+    assert (whole.passes_before, whole.estimate.passes) == (0, FEWEST_PASSES)
+    assert whole.estimate.samples.min() > 16
+
+
+def test_what_is_begun_anew_and_stopped_takes_no_better_ones_place(scene: Scene) -> None:
+    good = estimate_reference(scene, Goal(0.02))
+
+    def interrupt(progress: convergence.Progress) -> None:
+        if progress.passes == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        estimate_reference(scene, Goal(1e-4), interrupt)
+    assert identical(estimate_reference(scene, Goal(0.02)), good)
+    # as little as the sample limit lets it be
+    worse = estimate_reference(scene, Goal(1e-5, sample_limit=8))
+    assert not worse.estimate.reached
+    assert worse.estimate.rel_error == good.estimate.rel_error
+    assert identical(estimate_reference(scene, Goal(0.02)), good)
+
+
+def test_a_sealed_entry_of_something_else_is_made_again(scene: Scene) -> None:
+    made = estimate_reference(scene, Goal(0.1))
+    cache.store(made.recipe, {"mean.scattering": made.scattering}, {"rel_error": 0.0})
+    again = estimate_reference(scene, Goal(0.1))
+    assert identical(made, again)
+    assert "holds no reference" in again.notices[0]
+    assert estimate_reference(scene, Goal(0.1)).from_cache
+
+
 def test_what_a_limit_stopped_goes_on(scene: Scene) -> None:
     whole = estimate_reference(scene, Goal(0.01, percentile=90))
     (entry,) = cache.entries()
@@ -85,7 +120,8 @@ def test_what_a_limit_stopped_goes_on(scene: Scene) -> None:
         assert estimate_reference(scene, Goal(0.01, time_limit=1e-9, percentile=90)).estimate.passes == passes
     at_last = estimate_reference(scene, Goal(0.01, percentile=90))
     assert at_last.estimate.reached
-    assert at_last.passes_before == 14
+    # with time enough for strata it is begun anew
+    assert at_last.passes_before == 0
     error = np.hypot(*(made.standard_error("scattering") for made in (whole, at_last)))
     assert (np.abs(whole.scattering - at_last.scattering) < 6 * error + 1e-5).all()
 

@@ -7,11 +7,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from reference import plan
 from reference.goal import FEWEST_IN_LIMIT, FEWEST_PASSES, Goal
 from reference.moments import BlackReferenceError
-from reference.plan import MARGIN, MISSED, MOST_STRATA, PILOT_PASSES, PILOT_STRATA, plan_strata
+from reference.plan import MARGIN, MISSED, MOST_STRATA, PILOT_PASSES, PILOT_STRATA
 
 SHAPE = (24, 40)
+
+
+def plan_strata(one_pass: Callable[[int], np.ndarray], goal: Goal) -> np.ndarray:
+    return plan.plan_strata(one_pass, goal)[0]
 
 
 def pilot(spread: np.ndarray | float, mean: np.ndarray | float = 1.0) -> Callable[[int], np.ndarray]:
@@ -72,6 +77,33 @@ def test_the_fewest_passes_fit_into_the_sample_limit() -> None:
     assert (plan_strata(pilot(0.2), Goal(0.005, sample_limit=FEWEST_IN_LIMIT)) == 1).all()
     # a limit that leaves room changes nothing
     assert (plan_strata(pilot(0.2), Goal(0.005, sample_limit=10**6)) == plan_strata(pilot(0.2), Goal(0.005))).all()
+
+
+def test_a_limit_that_has_no_room_says_for_which_error_the_plan_is() -> None:
+    whole, planned_for = plan.plan_strata(pilot(0.2), Goal(0.005))
+    assert planned_for == 0.005
+    limit = int(whole.mean()) * FEWEST_IN_LIMIT // 4
+    _, planned_for = plan.plan_strata(pilot(0.2), Goal(0.005, sample_limit=limit))
+    assert planned_for == pytest.approx(0.02, rel=0.03)
+
+
+def test_the_sample_limit_holds_where_strata_vary() -> None:
+    spread = np.where(np.arange(SHAPE[1]) < 20, 1e-6, 0.5)[None, :]
+    for limit in (FEWEST_IN_LIMIT, 3 * FEWEST_IN_LIMIT, 50 * FEWEST_IN_LIMIT):
+        strata = plan_strata(pilot(spread), Goal(0.005, sample_limit=limit))
+        assert strata.min() >= 1
+        assert strata.mean() * FEWEST_IN_LIMIT <= limit
+
+
+def test_the_percentile_is_of_lit_pixels() -> None:
+    mean = np.zeros(SHAPE)
+    mean[4:8, 4:8] = 1
+    # less than 5 % of the image is lit, and all of it noisy
+    assert (plan_strata(pilot(0.2, mean), Goal(0.005))[4:8, 4:8] > 2 * AT_LEAST).all()
+
+
+def test_no_goal_takes_more_than_the_most() -> None:
+    assert plan_strata(pilot(1e-6), Goal(1e-6)).max() == MOST_STRATA
 
 
 def test_a_short_time_limit_leaves_one_stratum() -> None:

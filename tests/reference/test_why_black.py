@@ -150,12 +150,6 @@ def test_numbers_that_float32_cannot_multiply_are_named(settings: dict, reason: 
     assert reason in why_not_finite(scene, "scattering", image)
 
 
-def test_a_light_beyond_float32s_squares_is_black(tmp_path: Path) -> None:
-    scene = write_scene(tmp_path, size=(9, 9), emitters=point(1e20, 0, 0))
-    assert not airlight_of(scene).any()
-    assert "optical depth of at least 1e+19" in why_black(scene)
-
-
 def test_no_reason_is_made_up_for_pixels_that_look_elsewhere(tmp_path: Path) -> None:
     scene = write_scene(tmp_path, emitters=point(0, 0, 0), size=(9, 9))
     image = np.zeros((9, 9, 3))
