@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from experiments.options import TYPER_STYLE
+from reference.goal import Goal
 from scenes.errors import InputError
 
 if TYPE_CHECKING:
@@ -102,16 +103,24 @@ def _table(entries: list[Entry]) -> Table:
             f"{entry.estimator} {entry.estimator_version}, {entry.variant}" if entry.estimator else "-",
             " x ".join(map(str, entry.image_size)) if entry.image_size else "-",
             "-" if entry.rel_error is None else f"{100 * entry.rel_error:.3g}%",
-            "-" if entry.asked is None else f"{100 * entry.asked:.3g}% at {entry.percentile or 0:g}",
+            _asked(entry),
             _bytes(entry.size),
             f"{datetime.fromtimestamp(entry.last_used):%Y-%m-%d %H:%M}",
             _state(entry),
         )
     table.caption = (
-        "error: relative standard error at the percentile of the lit pixels for which it was asked, numerical error of "
-        "what is deterministic. Each byte is checked when a reference is used, and by `airlight cache prune`."
+        "error, asked: relative standard error at the 95th percentile of the lit pixels, or the one that is said; "
+        "numerical error of what is deterministic. Each byte is checked when a reference is used, and by "
+        "`airlight cache prune`."
     )
     return table
+
+
+def _asked(entry: Entry) -> str:
+    if entry.asked is None:
+        return "-"
+    percentile = f" at {entry.percentile:g}" if entry.percentile not in (None, Goal().percentile) else ""
+    return f"{100 * entry.asked:.3g}%{percentile}"
 
 
 def _state(entry: Entry) -> str:

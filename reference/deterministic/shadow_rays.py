@@ -53,7 +53,8 @@ class ShadowRays:
         place = mi.Point2f((pixel % width + 0.5) / width, (pixel // width + 0.5) / height)
         ray = self._mitsuba.sensor.sample_ray(0.0, 0.0, place, mi.Point2f(0.5))[0]
         path = eye_path(self._mitsuba.scene, ray, self._mitsuba.medium)
-        return np.minimum(np.array(path.t_end, np.float64), self._camera.rays()[2].ravel())
+        # where nothing stops them they end on the far plane, which the loaded camera knows in float64
+        return np.where(np.array(path.blocked), np.array(path.t_end, np.float64), self._camera.rays()[2].ravel())
 
     def sees(self, light: Light, point: Any) -> Any:
         """Whether the light sees each point (Point3f or Point3d), Bool."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,14 +15,13 @@ from slab import COLOURED, GREY, THICK, VIEWS, slab_scattering, slab_scene, slab
 from analytic import Medium
 from reference.convergence import converge
 from reference.deterministic import Deterministic
-from reference.deterministic import estimator as deterministic
 from reference.deterministic.lit_intervals import search
 from reference.deterministic.ray_spans import Rays
 from reference.deterministic.shadow_rays import ShadowRays
 from reference.estimators import Equiangular
 from reference.goal import Goal
 from reference.integrator import mi
-from reference.moments import BlackReferenceError
+from reference.moments import BlackReferenceError, NotFiniteError
 from scenes.catalogue import FOLDER, shipped
 from scenes.errors import InputError
 from scenes.loader import load
@@ -67,8 +65,9 @@ def test_shadow_volumes(name: str) -> None:
     truth = shadowed_airlight(scene, ShadowRays(scene).t_end().reshape(48, 48))
     value, error = Deterministic(scene).scattering()
     off = np.abs(value - truth)
-    # a ray may be lit over the last 1e-7 of its way: 4e-9 of the brightest
-    lit = truth > 1e-7 * truth.max()
+    # where a ray ends is a float32 of Mitsuba's, and past a plate's underside the closed form sees light: measured, up
+    # to 1.2e-7 of the brightest
+    lit = truth > 2e-7 * truth.max()
     # where a slit lights next to nothing of a ray, Embree's edges, 1e-5 wider than the plates, are much of it: the
     # error says so; measured, where a ray is as bright as a tenth of the mean: 3.9e-4 (slit), 4.8e-5 (half_plane),
     # 1.5e-5 and less (the others), and errors of 2.0e-4, 1.2e-4 and less at the 95th percentile
@@ -210,7 +209,7 @@ def test_a_mutation_is_noticed(name: str) -> None:
 
 
 def test_a_light_that_the_camera_looks_straight_into_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="looks straight into the light"):
+    with pytest.raises(NotFiniteError):
         Deterministic(write_scene(tmp_path, point(0, 0, 0), size=(5, 5))).estimate()
 
 
@@ -219,13 +218,12 @@ def test_a_light_inside_a_surface_leaves_nothing(tmp_path: Path) -> None:
         Deterministic(write_scene(tmp_path, point(0, 0, 0), sphere(0, 0, 0, 1), size=(16, 16))).estimate()
 
 
-def test_what_the_last_doubling_changed_is_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_last_doubling_changed_is_error() -> None:
     scene = load("slit", size=(48, 48))
     settled, _ = Deterministic(scene).scattering()
-    monkeypatch.setattr(deterministic, "search", partial(search, steps=(8,)))
     shadow_rays = ShadowRays(scene)
     still_open = search(shadow_rays, Rays.of_camera(scene, shadow_rays.t_end()), scene, steps=(8,)).open
-    value, error = (image.reshape(-1, 3)[still_open] for image in Deterministic(scene).scattering())
+    value, error = (image.reshape(-1, 3)[still_open] for image in Deterministic(scene, steps=(8,)).scattering())
     assert still_open.sum() > 100
     assert (np.abs(value - settled.reshape(-1, 3)[still_open]) <= error).all()
     # half of eight steps had not found the light there at all: measured 1.0001 of the value, without it 1e-4

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from reference.checks import _meet_square
+from reference.checks.shut_in import _meet_square
 from reference.checks.solids import closed_parts
 from scenes.loader import load
 from scenes.model import Material, Mesh
