@@ -46,15 +46,14 @@ def agree(
     """
     from experiments.agree.cases import list_cases
     from experiments.agree.report import run_agree
-    from experiments.pages import prepare_page
 
     parameters = parse_parameters(parameter)
     cases = list_cases(scene or [], all_scenes, every_phase, parameters)
     if out:
-        from experiments.agree.page import TITLE
+        from experiments.agree.page import prepare_folder
 
         # refused before the work
-        prepare_page(out, TITLE)
+        prepare_folder(out)
     words = ["airlight", "agree", *(["--all"] if all_scenes else scene or [])]
     words += ["--every-phase"] if every_phase else []
     words += [part for name, value in parameters.items() for part in ("-p", f"{name}={value}")]

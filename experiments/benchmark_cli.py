@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from experiments.options import SCENE_HELP, TYPER_STYLE
+from experiments.termination import terminated_cleanly
 from reference.goal import FEWEST_PASSES, Goal
 
 benchmark_app = typer.Typer(name="benchmark", help="Measure what things cost.", **TYPER_STYLE)
@@ -48,4 +49,5 @@ def reference(
     loaded = [airlight.load(name, size) for name in scene or SCENES]
     for one in loaded:
         announce_scene(one)
-    run_benchmark(loaded, rel_error, volpath_spp, out)
+    with terminated_cleanly():
+        run_benchmark(loaded, rel_error, volpath_spp, out)

@@ -264,7 +264,7 @@ def run(
     announce_variant()
     from experiments.runner import run_suite
 
-    with TerminalWatcher(loaded.reference.rel_error) as watcher:
+    with terminated_cleanly(), TerminalWatcher(loaded.reference.rel_error) as watcher:
         rows, folder = run_suite(name, loaded, out, watcher)
     console.print(results_table(rows))
     say(f"Results: {folder.resolve()}")

@@ -17,6 +17,8 @@ import drjit as dr  # noqa: E402
 
 # of the distance and of the coordinates: so far behind a boundary the next piece begins, past the rounding of both
 STEP = 1e-6
+# what a surface may do to light other than let it pass
+SCATTERING = int(mi.BSDFFlags.All) & ~int(mi.BSDFFlags.Null)
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class FogPath:
 
 def is_bounded(scene: Any) -> bool:
     """Tell whether a shape of the scene lets light pass: then the medium has a boundary."""
-    return any(mi.has_flag(shape.bsdf().flags(), mi.BSDFFlags.Null) for shape in scene.shapes() if shape.bsdf())
+    return any(map(_lets_light_pass, scene.shapes()))
 
 
 def fog_of(scene: Any, medium: Any) -> Any:
@@ -54,14 +56,42 @@ def fog_of(scene: Any, medium: Any) -> Any:
     Raises
     ------
     InputError
-        There is none.
+        There is none, more than one, or one that is not homogeneous; or a surface that lets light pass is not the
+        boundary of a medium inside it, or is more than that.
     """
-    if medium is not None:
-        return medium
-    for shape in scene.shapes():
-        if shape.interior_medium() is not None:
-            return shape.interior_medium()
-    raise InputError("The scene has no medium: neither its camera is in one nor a shape holds one.")
+    shapes = scene.shapes()
+    boundaries = [shape for shape in shapes if _lets_light_pass(shape)]
+    for shape in boundaries:
+        _check_boundary(shape)
+    if medium is None and not boundaries:
+        raise InputError("The scene has no medium: its camera is in none, and no shape with a null BSDF holds one.")
+    fog = boundaries[0].interior_medium() if medium is None else medium
+    for shape in shapes:
+        if any(other not in (None, fog) for other in (shape.interior_medium(), shape.exterior_medium())):
+            raise InputError(
+                f"single_scattering takes one medium, and the shape {shape.id()} has another than {fog.id()}: refer to "
+                "one and the same."
+            )
+    if not fog.is_homogeneous():
+        raise InputError(f"single_scattering takes a medium of type homogeneous, and {fog.id()} is not: make it one.")
+    return fog
+
+
+def _lets_light_pass(shape: Any) -> bool:
+    return bool(shape.bsdf() and mi.has_flag(shape.bsdf().flags(), mi.BSDFFlags.Null))
+
+
+def _check_boundary(shape: Any) -> None:
+    if shape.bsdf().flags() & SCATTERING:
+        raise InputError(
+            f"single_scattering takes a BSDF that is null or lets no light pass, and that of the shape {shape.id()} "
+            "does both: make the shape of one kind, or cut it into parts that are."
+        )
+    if shape.interior_medium() is None or shape.exterior_medium() is not None:
+        raise InputError(
+            "single_scattering takes a null BSDF for the boundary of the medium inside a shape, and the shape "
+            f"{shape.id()} bounds another place: name the medium as its interior, and nothing as its exterior."
+        )
 
 
 def whole_path(scene: Any, ray: Any, active: Any = True) -> FogPath:

@@ -46,8 +46,8 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
 
     AOVs hold the two parts. Point, spot and directional lights are sampled, all of them for each ray. The sensor needs
     the medium that it is in, as Mitsuba's own integrators need it. A medium fills space, or is bounded by a shape with
-    a `null` BSDF that has it as its interior; a directional light needs one that is bounded. Where a pixel's rays go is
-    up to the film's filter and to the sampler.
+    a `null` BSDF that has it as its interior, as a directional light needs it. A second medium, one that is not
+    homogeneous, and any other surface that lets light pass are refused. Filter and sampler place a pixel's rays.
 
     .. tabs::
         .. code-tab:: xml
@@ -106,13 +106,20 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
         rest.o, rest.maxt = ray(path.t_last), ray.maxt - path.t_last
         si = scene.ray_intersect(rest, active & path.blocked)
         hit = active & path.blocked & si.is_valid()
-        bsdf = si.bsdf(ray)
         for emitter in delta_emitters(scene):
             ds, weight = emitter.sample_direction(si, mi.Point2f(0.5), hit)
-            lit, leg = self._leg(scene, ds, SURFACE_MARGIN, bounded, path.ends_in_fog, hit)
-            value = bsdf.eval(mi.BSDFContext(), si, si.to_local(ds.d), lit)
+            lit, leg = self.surface_leg(scene, si, ds, bounded, path.ends_in_fog, hit)
+            value = self.reflected(si, ray, ds, lit)
             radiance[lit] += self._attenuated(value * weight, fog, ray, path.fog_length + leg)
         return radiance
+
+    def surface_leg(self, scene: Any, si: Any, ds: Any, bounded: bool, in_fog: Any, active: Any) -> tuple[Any, Any]:
+        """Whether a light sees a surface, and over what length its light is attenuated on the way [scene unit]."""
+        return self._leg(scene, ds, SURFACE_MARGIN, bounded, in_fog, active)
+
+    def reflected(self, si: Any, ray: Any, ds: Any, active: Any) -> Any:
+        """BSDF times cosine, Spectrum."""
+        return si.bsdf(ray).eval(mi.BSDFContext(), si, si.to_local(ds.d), active)
 
     def scattering(
         self,

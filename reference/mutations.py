@@ -1,6 +1,7 @@
 """The main estimator spoilt on purpose: what the agreement tests must notice, or they are worth nothing.
 
-Each mutation is an integrator, a subclass of the one under `volpath`'s convention, but for the lights that are moved.
+Each mutation is an integrator of `reference/agreement/spoilt.py`, but for the lights that are moved. It counts as
+noticed by a test that the right estimate passes.
 """
 
 from __future__ import annotations
@@ -8,143 +9,35 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 import analytic
 from reference.agreement.comparison import Comparison, compare
 from reference.agreement.measured import Witness, exact_witness, witness
+from reference.agreement.spoilt import (
+    HG,
+    Denser,
+    ForwardHG,
+    Mirrored,
+    MirroredHG,
+    NextStep,
+    NoCosine,
+    NoEyeLeg,
+    NoFog,
+    NoLightLeg,
+)
 from reference.agreement.unseen import unseen_variance
 from reference.agreement.volpath import AsVolpath
 from reference.agreement.witnesses import Report, Witnesses, estimate_deterministic, estimate_equiangular
 from reference.deterministic import Deterministic
 from reference.estimators import Equiangular
-from reference.fog_path import FogPath, bounded_path, fog_of, is_bounded
-from reference.integrator import FOG_MARGIN, mi
+from reference.integrator import mi
 from reference.mitsuba_scene import instantiate
 from scenes.model import Scene
 
-# isort: split
-import drjit as dr  # after the integrator, which chose Dr.Jit's LLVM
-
-# strata of a ray, by one of which the visibility is off
-STEPS = 64
 # of a phase function's largest value: what sets forward and backward apart must be more
 EVEN = 0.1
-# takes the place of a phase function for which g -> -g would change nothing
-HG = 0.6
-
-
-class Mirrored(AsVolpath):
-    """Scatters backward what it should scatter forward."""
-
-    @staticmethod
-    def _interaction(medium: Any, ray: Any, t: Any) -> Any:
-        mei = AsVolpath._interaction(medium, ray, t)
-        # only the phase function asks where the ray came from
-        mei.wi = -mei.wi
-        return mei
-
-
-class MirroredHG(AsVolpath):
-    """Henyey-Greenstein with g = -0.6 in the place of the scene's even phase function."""
-
-    g = -HG
-
-    def scattered(self, scene: Any, emitter: Any, ray: Any, t: Any, medium: Any, active: Any = True) -> Any:
-        """Change the phase function."""
-        fog = fog_of(scene, medium)
-        mei = self._interaction(fog, ray, t)
-        ds, _ = emitter.sample_direction(mei, mi.Point2f(0.5), active)
-        context = mi.PhaseFunctionContext(None)
-        even, _ = fog.phase_function().eval_pdf(context, mei, ds.d, active)
-        other, _ = mi.load_dict({"type": "hg", "g": self.g}).eval_pdf(context, mei, ds.d, active)
-        return super().scattered(scene, emitter, ray, t, medium, active) * other / even
-
-
-class Denser(AsVolpath):
-    """One per cent more extinction, and by the same albedo one per cent more scattering."""
-
-    def scattered(self, scene: Any, emitter: Any, ray: Any, t: Any, medium: Any, active: Any = True) -> Any:
-        """Raise sigma_s."""
-        return 1.01 * super().scattered(scene, emitter, ray, t, medium, active)
-
-    def _attenuated(self, radiance: Any, medium: Any, ray: Any, distance: Any) -> Any:
-        return super()._attenuated(radiance, medium, ray, 1.01 * distance)
-
-
-class NoEyeLeg(AsVolpath):
-    """Nothing is lost between fog or surface and the eye."""
-
-    def scattered(self, scene: Any, emitter: Any, ray: Any, t: Any, medium: Any, active: Any = True) -> Any:
-        """Find how long the eye's leg is."""
-        before = mi.Ray3f(ray)
-        before.maxt = t
-        self._eye_leg = bounded_path(scene, before, medium is not None, active).fog_length if is_bounded(scene) else t
-        return super().scattered(scene, emitter, ray, t, medium, active)
-
-    def surface(self, scene: Any, ray: Any, path: FogPath, medium: Any, active: Any = True) -> Any:
-        """Find how long the eye's leg is."""
-        self._eye_leg = path.fog_length
-        return super().surface(scene, ray, path, medium, active)
-
-    def _attenuated(self, radiance: Any, medium: Any, ray: Any, distance: Any) -> Any:
-        return super()._attenuated(radiance, medium, ray, distance - self._eye_leg)
-
-
-class NoLightLeg(AsVolpath):
-    """Nothing is lost between light and fog or surface."""
-
-    def _leg(self, *arguments: Any) -> tuple[Any, Any]:
-        return super()._leg(*arguments)[0], mi.Float(0.0)
-
-    def surface_leg(self, *arguments: Any) -> tuple[Any, Any]:
-        """Keep the visibility alone."""
-        return super().surface_leg(*arguments)[0], mi.Float(0.0)
-
-
-class NoFog(AsVolpath):
-    """What Mitsuba's integrators draw where the medium is left out of the sensor, without a word."""
-
-    def _attenuated(self, radiance: Any, medium: Any, ray: Any, distance: Any) -> Any:
-        return radiance
-
-
-class NextStep(AsVolpath):
-    """Visibility looked up one of 64 strata further along the ray."""
-
-    def _distances(self, scene: Any, emitter: Any, ray: Any, path: FogPath, medium: Any) -> Any:
-        distance = super()._distances(scene, emitter, ray, path, medium)
-
-        def remember(u: Any) -> tuple[Any, Any]:
-            self._next, _ = distance(dr.minimum(u + 1 / STEPS, 1.0))
-            return distance(u)
-
-        return remember
-
-    def scattered(self, scene: Any, emitter: Any, ray: Any, t: Any, medium: Any, active: Any = True) -> Any:
-        """Take the light's way of here and the shadow of there."""
-        mei = self._interaction(fog_of(scene, medium), ray, self._next)
-        there, _ = emitter.sample_direction(mei, mi.Point2f(0.5), active)
-        self._there = super()._leg(scene, there, FOG_MARGIN, is_bounded(scene), mi.Bool(True), active)[0]
-        return super().scattered(scene, emitter, ray, t, medium, active)
-
-    def _leg(self, scene: Any, ds: Any, margin: float, bounded: bool, in_fog: Any, active: Any) -> tuple[Any, Any]:
-        _, length = super()._leg(scene, ds, margin, bounded, in_fog, active)
-        return active & self._there, length
-
-
-class NoCosine(AsVolpath):
-    """Surfaces as bright as if each faced the light."""
-
-    def reflected(self, si: Any, ray: Any, ds: Any, active: Any) -> Any:
-        """Divide by the cosine."""
-        return super().reflected(si, ray, ds, active) / dr.maximum(si.to_local(ds.d).z, 1e-3)
-
-
-for _integrator in (Mirrored, MirroredHG, Denser, NoEyeLeg, NoLightLeg, NoFog, NextStep, NoCosine):
-    mi.register_integrator(f"single_scattering_{_integrator.__name__}", _integrator)
 
 
 @contextmanager
@@ -237,32 +130,49 @@ class Outcome:
     mutation : Mutation
     meaning : str                       of the mutation in this scene
     comparisons : tuple of Comparison   with each witness that it is held against; none where it is idle
+    controls : tuple of Comparison      of the right estimate with the same witnesses
     idle : str                          why it cannot matter in this scene; "" where it can
     """
 
     mutation: Mutation
     meaning: str
     comparisons: tuple[Comparison, ...]
+    controls: tuple[Comparison, ...]
     idle: str
 
     @property
+    def noticed_by(self) -> tuple[tuple[str, ...], ...]:
+        """Names of the tests of each comparison that fail it, and pass what is not spoilt."""
+        return tuple(
+            tuple(
+                spoilt.test
+                for spoilt, right in zip(comparison.verdicts, control.verdicts, strict=True)
+                if right.agrees and not spoilt.agrees
+            )
+            for comparison, control in zip(self.comparisons, self.controls, strict=True)
+        )
+
+    @property
     def noticed(self) -> bool:
-        """Whether any test fails it."""
-        return any(not comparison.agrees for comparison in self.comparisons)
+        """Whether any test fails it and passes what is not spoilt."""
+        return any(self.noticed_by)
 
 
 def try_mutation(mutation: Mutation, scene: Scene, witnesses: Witnesses, report: Report | None = None) -> Outcome:
     """Compare a spoilt estimate with the right witnesses, the deterministic mode and `volpath`."""
     if idle := mutation.idle(scene, witnesses):
-        return Outcome(mutation, mutation.meaning, (), idle)
+        return Outcome(mutation, mutation.meaning, (), (), idle)
     integrator, meaning = mutation.integrator, mutation.meaning
     truths: tuple[Witness, ...] = witnesses.composite[1:]
+    right = witnesses.composite[0]
     if mutation is MIRROR and is_even(scene):
         integrator = MirroredHG
         meaning += f"; both sides take HG {HG}, for the scene's {scene.phase.name} is even"
         truths = (_with_hg(scene, witnesses),)
+        right = _spoilt_witness(mutation, ForwardHG, scene, witnesses, report)
     spoilt = _spoilt_witness(mutation, integrator, scene, witnesses, report)
-    return Outcome(mutation, meaning, tuple(compare(spoilt, truth) for truth in truths), "")
+    comparisons, controls = (tuple(compare(one, truth) for truth in truths) for one in (spoilt, right))
+    return Outcome(mutation, meaning, comparisons, controls, "")
 
 
 def is_even(scene: Scene) -> bool:
@@ -283,10 +193,20 @@ def _spoilt_witness(
             return exact_witness(mutation.name, estimator.fixed()["surface"])
         estimate, surface = estimate_equiangular(scene, plugin, report)
     unseen = unseen_variance(witnesses.unseen.equiangular, estimate.samples * estimate.passes)
+    if issubclass(integrator, ForwardHG):
+        unseen *= _brightening(scene) ** 2
     return witness(mutation.name, estimate, unseen, surface)
 
 
 def _with_hg(scene: Scene, witnesses: Witnesses) -> Witness:
-    """The deterministic mode with the phase function that MirroredHG mirrors."""
-    estimate = estimate_deterministic(replace(scene, phase=analytic.phase("hg", g=HG)), 1 - mi.math.ShadowEpsilon)
-    return witness(Deterministic.name, estimate, surface=witnesses.surface_as_volpath)
+    """The deterministic mode with the phase function of ForwardHG."""
+    other = replace(scene, phase=analytic.phase("hg", g=HG))
+    estimate = estimate_deterministic(other, 1 - mi.math.ShadowEpsilon)
+    doubt = _brightening(scene) ** 2 * witnesses.doubt
+    return witness(Deterministic.name, estimate, doubt, witnesses.surface_as_volpath)
+
+
+def _brightening(scene: Scene) -> float:
+    """How much more of the light ForwardHG scatters than the scene's even phase function, at most."""
+    cosine = np.linspace(-1, 1, 201)
+    return float((analytic.phase("hg", g=HG).evaluate(cosine) / scene.phase.evaluate(cosine)).max())

@@ -59,12 +59,16 @@ class Finding:
 
     @property
     def agrees(self) -> bool:
-        """Whether all pairs do."""
-        return not self.failure and all(comparison.agrees for comparison in self.comparisons)
+        """Whether all pairs do, and the surfaces under both conventions."""
+        return (
+            self.witnesses is not None
+            and self.witnesses.surfaces.agrees
+            and all(comparison.agrees for comparison in self.comparisons)
+        )
 
     @property
     def unnoticed(self) -> list[str]:
-        """Mutations that matter here, and that no test noticed."""
+        """Mutations that matter here, and that no test noticed which passes the right estimate."""
         return [outcome.mutation.name for outcome in self.outcomes if not (outcome.noticed or outcome.idle)]
 
     @property

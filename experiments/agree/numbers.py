@@ -54,13 +54,15 @@ def _case(finding: Finding) -> dict[str, Any]:
                 "idle": outcome.idle,
                 "noticed": outcome.noticed,
                 "comparisons": [_comparison(comparison) for comparison in outcome.comparisons],
+                "controls": [_comparison(control) for control in outcome.controls],
             }
             for outcome in finding.outcomes
         ],
     }
     if finding.witnesses:
-        keys = ("convention_shift", "convention_flips", "volpath_error", "volpath_samples")
-        found |= {key: getattr(finding.witnesses, key) for key in keys}
+        keys = ("convention_shift", "volpath_error", "volpath_samples")
+        found |= {key: _number(getattr(finding.witnesses, key)) for key in keys}
+        found["surfaces"] = {**asdict(finding.witnesses.surfaces), "agrees": finding.witnesses.surfaces.agrees}
         found["seconds_by_witness"] = finding.witnesses.seconds
     return found
 
@@ -88,5 +90,5 @@ def _comparison(comparison: Comparison) -> dict[str, Any]:
 
 
 def _number(value: float) -> float | None:
-    """JSON has no infinity."""
+    """JSON has no infinity, nor has it NaN."""
     return value if np.isfinite(value) else None

@@ -15,32 +15,43 @@ from experiments.agree.cases import OWN_POWER, Finding
 from experiments.agree.histogram import draw_histogram
 from experiments.agree.numbers import as_json, exr_layers
 from experiments.exr import write_exr
-from experiments.pages import made_by
+from experiments.pages import made_by, prepare_page
 from experiments.provenance import environment
 from reference.agreement.comparison import Comparison
 from reference.agreement.pooled import Pooled, pooled
 from reference.agreement.significance import POWER, SIGNIFICANCE
-from reference.agreement.witnesses import IMAGE_POWER
+from reference.agreement.witnesses import IMAGE_POWER, Witnesses
+from reference.estimators import Volpath
+from scenes.errors import InputError
 from scenes.replacing import replacing
 
 TITLE = "Do independent estimates agree?"
+# what is written beside README.md
+OTHERS = ("agreement.json", "z_histogram.png", "z.exr")
 PAGE = """# {title}
 
 {made}
 
-{about} The main estimator is compared with two witnesses that share no estimate with it: the deterministic mode (lit
-intervals by ray casting, float64 quadrature on them; the airlight alone) and Mitsuba's `volpath` with one scattering
-event (the composite). Where `volpath` takes part, the others follow its convention: it stops short of a light, and
-begins above a surface.
+{about}
+
+The main estimator is compared with two witnesses whose airlight shares no estimate with its own: the deterministic mode
+(lit intervals by ray casting, float64 quadrature on them) and Mitsuba's `volpath` with one scattering event. The first
+pair is of the airlight alone; where `volpath` takes part, of all light, and the surfaces that the deterministic mode is
+given are the main estimator's. There the others follow `volpath`'s convention: it stops short of a light, and begins
+above a surface. The surfaces that are shipped are held against those under that convention, which has to explain the
+difference (`reference/agreement/surfaces.py`): {surfaces}
 
 Each pair passes three tests: of each pixel and channel, of tiles of 8 x 8 pixels, and of the image mean. z is the
 largest difference in standard errors, mapped from Student's t to a Gaussian of the same tail. The critical size behind
 the stroke is exceeded once in {once:,} tests by chance, however many pixels there are (Sidak): of {tests} tests here
-one in {runs:,} such pages would fail by chance. A test *catches* a uniform bias, the same factor on every pixel, from
-the size in the column on, with {power:.0%} probability. Errors allow for what so many samples and probes may not have
-met (`reference/agreement/unseen.py`), so scores may be less spread out than a Gaussian's.
+one in {runs:,} such pages would fail by chance. That holds where the mean of a pass is near a Gaussian, as the mean of
+64 samples or more is taken to be. A test *catches* a uniform bias, the same factor on every pixel, from the size in the
+column on, with {power:.0%} probability. Errors allow for what so many samples and probes may not have met
+(`reference/agreement/unseen.py`): that raises what is caught, and scores may be less spread out than a Gaussian's.
 
-The main estimator and the deterministic mode are to know the image mean to {own:.1%} or better in each case: {sharp}
+The main estimator and the deterministic mode are to know the image mean to {own:.1%} or better in each case:
+{sharp}
+
 `volpath` goes on until it catches {aim:.1%} as well, or its time is over.
 
 | scene | phase | pair | z pixels | z tiles | z image mean | catches: pixels | tiles | image mean | verdict | s |
@@ -60,6 +71,21 @@ MUTATIONS = """
 |---|---|---|---|---|---|---|---|
 {rows}
 """
+
+
+def prepare_folder(folder: Path) -> None:
+    """Make the folder before the work begins, and see that nothing in it would be lost.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written to, its README.md is another page, or it has none and one of the other
+        files is there.
+    """
+    prepare_page(folder, TITLE)
+    for name in OTHERS:
+        if (folder / name).exists() and not (folder / "README.md").exists():
+            raise InputError(f"{folder / name} is of no page of ours, and would be lost: choose another --out.")
 
 
 def write_page(folder: Path, findings: Sequence[Finding], command: str) -> None:
@@ -95,6 +121,7 @@ def write_page(folder: Path, findings: Sequence[Finding], command: str) -> None:
         runs=max(1, round(1 / (1 - (1 - SIGNIFICANCE) ** max(tests, 1)))),
         power=POWER,
         own=OWN_POWER,
+        surfaces=_surfaces(findings),
         sharp=f"**not so in {', '.join(blunt)}**." if blunt else "they do.",
         aim=IMAGE_POWER,
         rows="\n".join(row for finding in findings for row in _rows(finding)),
@@ -131,13 +158,35 @@ def convention_line(finding: Finding) -> str:
     """What is allowed for on the way to `volpath`."""
     witnesses = finding.witnesses
     assert witnesses
-    pixels = f"{witnesses.convention_flips} pixel{'s' * (witnesses.convention_flips != 1)}"
+    volpath = (
+        f"volpath took {witnesses.volpath_samples} samples a pixel, and its image mean has a standard error of "
+        f"{witnesses.volpath_error:.4%}."
+        if np.isfinite(witnesses.volpath_error)
+        else f"{_no_light(witnesses)}: it says nothing here."
+    )
     return (
         f"Allowed for: volpath stops short of a light, and begins above a surface; this changes the image mean by "
-        f"{witnesses.convention_shift:+.4%} here, and turns the surface of {pixels} light or dark. volpath took "
-        f"{witnesses.volpath_samples} samples a pixel, and its image mean has a standard error of "
-        f"{witnesses.volpath_error:.4%}."
+        f"{witnesses.convention_shift:+.4%} here. {volpath}"
     )
+
+
+def met_no_light(finding: Finding, comparison: Comparison) -> bool:
+    """Tell whether `volpath` is of the pair and stayed black, so that to agree with it says little."""
+    assert finding.witnesses
+    return comparison.second.name == Volpath.name and not np.isfinite(finding.witnesses.volpath_error)
+
+
+def _no_light(witnesses: Witnesses) -> str:
+    return f"volpath met no light in {witnesses.volpath_samples} samples"
+
+
+def _surfaces(findings: Sequence[Finding]) -> str:
+    bad = [
+        f"{finding.case.name}: {finding.witnesses.surfaces}"
+        for finding in findings
+        if finding.witnesses and not finding.witnesses.surfaces.agrees
+    ]
+    return f"**not so in {'; '.join(bad)}**." if bad else "it does."
 
 
 def percent(power: float) -> str:
@@ -145,12 +194,11 @@ def percent(power: float) -> str:
     return f"{power:.3%}" if np.isfinite(power) else "none"
 
 
-def noticed_by(comparison: Comparison) -> str:
-    """Which tests a spoilt estimate fails, in words."""
-    by = [verdict.test for verdict in comparison.verdicts if not verdict.agrees]
-    if not by:
-        return "passes"
-    return f"noticed by {'all' if len(by) == len(comparison.verdicts) else ', '.join(by)}"
+def noticed_by(comparison: Comparison, by: Sequence[str]) -> str:
+    """Which tests notice a spoilt estimate, in words, given those that pass the right one."""
+    if by:
+        return f"noticed by {'all' if len(by) == len(comparison.verdicts) else ', '.join(by)}"
+    return "passes" if comparison.agrees else "cannot tell: the right estimate fails too"
 
 
 def _about(findings: Sequence[Finding]) -> str:
@@ -170,6 +218,9 @@ def _rows(finding: Finding) -> list[str]:
         scores = " | ".join(f"{verdict.largest:+.2f} / {verdict.critical:.2f}" for verdict in comparison.verdicts)
         powers = " | ".join(percent(verdict.power) for verdict in comparison.verdicts)
         verdict = "agrees" if comparison.agrees else "**disagrees**"
+        if comparison.agrees and met_no_light(finding, comparison):
+            assert finding.witnesses
+            verdict = _no_light(finding.witnesses)
         seconds = "" if number else f"{finding.seconds:.0f}"
         rows.append(f"{about} {comparison.name} | {scores} | {powers} | {verdict} | {seconds} |")
         about = "| | |"
@@ -182,9 +233,9 @@ def _mutation_rows(finding: Finding) -> list[str]:
         about = f"| {outcome.mutation.name} | {outcome.meaning} |"
         if outcome.idle:
             rows.append(f"{about} | | | | | no bearing on this scene: {outcome.idle} |")
-        for comparison in outcome.comparisons:
+        for comparison, by in zip(outcome.comparisons, outcome.noticed_by, strict=True):
             scores = " | ".join(f"{verdict.largest:+.1f}" for verdict in comparison.verdicts)
-            outcome_of = noticed_by(comparison)
-            rows.append(f"{about} {comparison.second.name} | {comparison.difference:+.2%} | {scores} | {outcome_of} |")
+            row = f"{about} {comparison.second.name} | {comparison.difference:+.2%} | {scores}"
+            rows.append(f"{row} | {noticed_by(comparison, by)} |")
             about = "| | |"
     return rows

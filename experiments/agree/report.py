@@ -12,7 +12,7 @@ from rich.progress import BarColumn, SpinnerColumn, TaskProgressColumn, TextColu
 from rich.table import Table
 
 from experiments.agree.cases import OWN_POWER, Case, Finding, examine, failed
-from experiments.agree.page import convention_line, noticed_by, percent, pooled_line, write_page
+from experiments.agree.page import convention_line, met_no_light, noticed_by, percent, pooled_line, write_page
 from experiments.bars import Bars
 from experiments.console import console, notices, say, warn
 from experiments.terminal import announce_scene
@@ -108,15 +108,16 @@ def run_agree(
 
 def _tell(finding: Finding, briefly: bool) -> None:
     """Print what was found in one case: a line or two, or of an only case all of it."""
-    if finding.failure:
+    if not finding.witnesses:
         warn(f"{finding.case.name}: failed after {finding.seconds:.0f} s. {finding.failure}")
         return
     if briefly:
         say(case_line(finding))
     else:
         console.print(agreement_table(finding))
+        say(f"{finding.witnesses.surfaces}.")
         say(convention_line(finding))
-        if finding.comparisons[1].verdicts[2].power > IMAGE_POWER:
+        if not met_no_light(finding, finding.comparisons[1]) and finding.comparisons[1].verdicts[2].power > IMAGE_POWER:
             warn(
                 f"volpath stopped at its time limit: a bias of the image mean shows from "
                 f"{percent(finding.comparisons[1].verdicts[2].power)} on, where {IMAGE_POWER:.1%} was aimed at."
@@ -138,6 +139,8 @@ def case_line(finding: Finding) -> str:
         for verdict in comparison.verdicts
         if not verdict.agrees
     ]
+    if finding.witnesses and not finding.witnesses.surfaces.agrees:
+        bad.append(str(finding.witnesses.surfaces))
     catches = ", ".join(percent(comparison.verdicts[2].power) for comparison in finding.comparisons)
     return f"{finding.case.name}: {'; '.join(bad) or 'agrees'}; catches {catches} of the mean; {finding.seconds:.0f} s"
 
@@ -168,12 +171,13 @@ def agreement_table(finding: Finding) -> Table:
                 f"{verdict.largest:+.2f}",
                 f"{verdict.critical:.2f}",
                 percent(verdict.power),
-                "agrees" if verdict.agrees else "DISAGREES",
+                "DISAGREES" if not verdict.agrees else "no light" if met_no_light(finding, comparison) else "agrees",
                 "" if number else f"{spread.mean:+.3f}, {spread.deviation:.3f}, {spread.kurtosis:.2f}",
             )
     table.caption = (
         "largest: difference in standard errors, on a Gaussian's scale. critical: exceeded once in 10,000 tests by "
-        "chance. catches: the smallest bias, the same factor on every pixel, that shows with 95 % probability. "
+        "chance, where the mean of a pass is near a Gaussian. catches: the smallest bias, the same factor on every "
+        "pixel, that shows with 95 % probability. "
         "mean, deviation, kurtosis: of the pixels' scores; of a Gaussian 0, 1, 3, and less spread out where the error "
         "allows for what the samples may not have met."
     )
@@ -198,13 +202,13 @@ def mutations_table(finding: Finding) -> Table:
     for outcome in finding.outcomes:
         if outcome.idle:
             table.add_row(outcome.mutation.name, "", "", "", "", "", f"no bearing on this scene: {outcome.idle}")
-        for number, comparison in enumerate(outcome.comparisons):
+        for number, (comparison, by) in enumerate(zip(outcome.comparisons, outcome.noticed_by, strict=True)):
             table.add_row(
                 "" if number else outcome.mutation.name,
                 comparison.second.name,
                 f"{comparison.difference:+.2%}",
                 *(f"{verdict.largest:+.1f}" for verdict in comparison.verdicts),
-                noticed_by(comparison),
+                noticed_by(comparison, by),
             )
     table.caption = "\n".join(f"{outcome.mutation.name}: {outcome.meaning}." for outcome in finding.outcomes)
     return table
@@ -217,10 +221,19 @@ def _summary(findings: Sequence[Finding]) -> str:
         for comparison in finding.comparisons
         if not comparison.agrees
     ]
+    bad += [
+        f"{finding.case.name}: surfaces" if len(findings) > 1 else "surfaces"
+        for finding in findings
+        if finding.witnesses and not finding.witnesses.surfaces.agrees
+    ]
     lost = [finding.case.name for finding in findings if finding.failure]
     text = f"These disagree: {'; '.join(bad)}." if bad else ""
     text += f" These failed: {', '.join(lost)}." if lost else ""
-    text = text or ("All three agree." if len(findings) == 1 else f"All pairs agree in all {len(findings)} cases.")
+    alone = findings[0]
+    if not text and len(findings) == 1:
+        dark = met_no_light(alone, alone.comparisons[1])
+        text = "The two that met light agree." if dark else "All three agree."
+    text = text or f"All pairs agree in all {len(findings)} cases."
     if any(finding.outcomes for finding in findings):
         unnoticed = [f"{name} ({finding.case.name})" for finding in findings for name in finding.unnoticed]
         text += f" Unnoticed: {', '.join(unnoticed)}." if unnoticed else " Each mutation that matters is noticed."

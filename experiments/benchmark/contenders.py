@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.estimators import Equiangular, Volpath
+from reference.film_volpath import REFLECTANCES, set_to_zero
 from reference.integrator import SingleScattering, mi
 from scenes.model import Scene
-
-# how Mitsuba calls what surfaces reflect
-REFLECTANCES = ("reflectance.value", "reflectance.data")
 
 
 class AirlightVolpath(Volpath):
@@ -24,13 +22,11 @@ class AirlightVolpath(Volpath):
 
     def __init__(self, scene: Scene, samples: int) -> None:
         super().__init__(scene, samples)
-        parameters = mi.traverse(self.mitsuba.scene)
-        names = [name for name in parameters.keys() if name.endswith(REFLECTANCES)]  # noqa: SIM118 - no iterator
-        parameters.update({name: parameters[name] * 0 for name in names})
+        set_to_zero(self.mitsuba.scene, REFLECTANCES)
 
 
 class Unshadowed(SingleScattering):
-    """The integrator without shadow rays (:monosp:`single_scattering_unshadowed`): what is left of time and error."""
+    """The integrator without shadow rays (:monosp:`single_scattering_no_shadow_rays`): the time and error left."""
 
     def _leg(self, scene: Any, ds: Any, margin: float, bounded: bool, in_fog: Any, active: Any) -> tuple[Any, Any]:
         if not bounded:
@@ -39,13 +35,13 @@ class Unshadowed(SingleScattering):
         return active, super()._leg(scene, ds, margin, bounded, in_fog, active)[1]
 
 
-mi.register_integrator("single_scattering_unshadowed", Unshadowed)
+mi.register_integrator("single_scattering_no_shadow_rays", Unshadowed)
 
 
 def unshadowed(estimator: Equiangular, scene: Scene) -> Equiangular:
     """The same estimator of the same scene, of as many strata for each pixel, without shadow rays."""
     other = with_strata(scene, estimator.samples)
-    other.integrator = mi.load_dict({"type": "single_scattering_unshadowed"})
+    other.integrator = mi.load_dict({"type": "single_scattering_no_shadow_rays"})
     return other
 
 

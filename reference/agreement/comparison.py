@@ -87,7 +87,9 @@ class Comparison:
 
     @property
     def difference(self) -> float:
-        """Of the image means, relative to the second."""
+        """Of the image means, relative to the second; infinite where that is black."""
+        if self.second.image.mean == 0:
+            return float("inf")
         return float(self.first.image.mean / self.second.image.mean - 1)
 
     @property
@@ -99,7 +101,13 @@ class Comparison:
 
 
 def compare(first: Witness, second: Witness) -> Comparison:
-    """Test whether two independent witnesses differ by more than their errors."""
+    """Test whether two independent witnesses differ by more than their errors.
+
+    Raises
+    ------
+    ValueError
+        A mean or a variance is not finite.
+    """
     return Comparison(
         first,
         second,
@@ -114,10 +122,13 @@ def compare(first: Witness, second: Witness) -> Comparison:
 def _verdict(test: str, first: Measured, second: Measured) -> Verdict:
     bright = np.maximum(np.abs(first.mean), np.abs(second.mean))
     difference = first - second + Measured.uncertain(np.square(ROUNDING * bright))
-    lit = bright > 0
+    # what is no number is not dark
+    lit = ~(bright == 0)
     scores = np.full(np.shape(lit), np.nan)
     error = np.sqrt(difference.variance[lit])
     scores[lit] = gaussian_score(difference.mean[lit] / error, difference.dof[lit])
+    if not np.isfinite(scores[lit]).all():
+        raise ValueError(f"the means and variances of {test} must be finite")
     count = int(lit.sum())
     return Verdict(test, scores, critical_score(count), _power(difference, second.mean, lit))
 
@@ -131,4 +142,6 @@ def _power(difference: Measured, mean: Array, lit: NDArray[np.bool_]) -> float:
         # channels of a pixel share their paths, so the best of them speaks for all
         best = np.argmax(ratio, axis=-1) + ratio.shape[-1] * np.arange(ratio[..., 0].size).reshape(ratio.shape[:-1])
         best = best[lit.any(axis=-1)]
-    return smallest_bias(mean.ravel()[best], error.ravel()[best], difference.dof.ravel()[best], int(lit.sum()))
+    sampled = np.sqrt(np.clip(1 - difference.allowed / np.square(error), 0, 1))
+    value, error, dof, sampled = (values.ravel()[best] for values in (mean, error, difference.dof, sampled))
+    return smallest_bias(value, error, dof, int(lit.sum()), sampled)

@@ -22,32 +22,36 @@ class Measured:
     Attributes
     ----------
     mean, variance, dof : (...)    dof is infinite where the variance is no estimate
+    allowed : (...)                of the variance, what allows for the unknown and is no spread of samples
     """
 
     mean: Array
     variance: Array
     dof: Array
+    allowed: Array
 
     @classmethod
     def sampled(cls, mean: Array, error: Array, passes: int) -> Measured:
         """Means of `passes` passes, or where there were none, numbers with a known error."""
-        return cls(mean, np.square(error), np.full(np.shape(mean), passes - 1.0 if passes else np.inf))
+        variance = np.square(error)
+        dof = np.full(np.shape(mean), passes - 1.0 if passes else np.inf)
+        return cls(mean, variance, dof, np.zeros_like(variance) if passes else variance)
 
     @classmethod
     def uncertain(cls, variance: Array) -> Measured:
         """Nothing but an uncertainty, of known variance."""
-        return cls(np.zeros_like(variance), variance, np.full(np.shape(variance), np.inf))
+        return cls(np.zeros_like(variance), variance, np.full(np.shape(variance), np.inf), variance)
 
     def __add__(self, other: Measured) -> Measured:
         """Sum with what is independent of it; degrees of freedom by Welch (1947) and Satterthwaite (1946)."""
         variance = self.variance + other.variance
         spread = self.variance**2 / self.dof + other.variance**2 / other.dof
         dof = np.divide(variance**2, spread, out=np.full(np.shape(spread), np.inf), where=spread > 0)
-        return Measured(self.mean + other.mean, variance, dof)
+        return Measured(self.mean + other.mean, variance, dof, self.allowed + other.allowed)
 
     def __sub__(self, other: Measured) -> Measured:
         """Difference from what is independent of it."""
-        return self + Measured(-other.mean, other.variance, other.dof)
+        return self + Measured(-other.mean, other.variance, other.dof, other.allowed)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,8 @@
 
 An error bar from n passes is itself uncertain, so a difference in error bars follows Student's t. It is mapped to the
 Gaussian score with the same tail, which makes scores of different numbers of passes comparable; a family of m of them
-is tested at the significance of one test by the correction of Sidak.
+is tested at the significance of one test by the correction of Sidak. That rests on passes whose means are near a
+Gaussian: of 32 exponential ones, the test of the pixels raised an alarm 46 % of the time for 5 %.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ SIGNIFICANCE = 1e-4
 POWER = 0.95
 # beyond it Student's t is a Gaussian to float64's last digits, and scipy's inverse loses its own
 MOST_DOF = 1e8
+# of a score's spread where nothing is sampled: narrow, and no division by zero
+NARROWEST = 1e-12
 # below it the tail's logarithm comes from its leading term
 SMALLEST_TAIL = 1e-290
 
@@ -39,7 +42,7 @@ def gaussian_score(t: ArrayLike, dof: ArrayLike) -> Array:
     """
     t, dof = np.broadcast_arrays(np.asarray(t, float), np.asarray(dof, float))
     size, exact = np.abs(t), np.isinf(dof)
-    nu = np.where(exact, 1.0, dof)
+    nu = np.where(exact, 1.0, np.minimum(dof, MOST_DOF))
     tail = stdtr(nu, -size)
     # by hypot: the square of a large t leaves float64
     log_x = -2 * np.log(np.hypot(1, size / np.sqrt(nu)))
@@ -60,25 +63,27 @@ def _tail(count: int) -> float:
     return float(-np.expm1(np.log1p(-SIGNIFICANCE) / count)) / 2
 
 
-def smallest_bias(mean: Array, error: Array, dof: Array, count: int) -> float:
+def smallest_bias(mean: Array, error: Array, dof: Array, count: int, sampled: ArrayLike = 1.0) -> float:
     """Smallest factor - 1 on every place of the image that the test of a family catches with the probability POWER.
 
     Parameters
     ----------
     mean, error, dof : (n,)   places whose scores are independent
     count : int               size of the family that the critical score is made for, n or more
+    sampled : (n,)            share of the error that is the spread of samples, from 0 to 1; the rest is an allowance,
+                              which raises what a difference must exceed and never helps it to
 
     Returns
     -------
     float   infinite where no bias would be caught. With one place of known error it is
-            (critical score + 1.645) error / mean. It rests on the errors as they were estimated: in a simulation with
-            32 passes and errors from 0.04 to 3 of the mean, the bias that 240 pixels promise to catch was caught 89 %
-            of the time, 1.05 times it 95 %.
+            (critical score + 1.645 sampled) error / mean. It rests on the errors as they were estimated: in a
+            simulation with 32 passes and errors from 0.04 to 3 of the mean, the bias that 240 pixels promise to catch
+            was caught 89 % of the time, 1.05 times it 95 %.
     """
     # Student's t under a shift: Johnson and Welch's (1940) approximation of its tail
     nu = np.minimum(dof, MOST_DOF)
     critical = -stdtrit(nu, _tail(count))
-    width = np.sqrt(1 + critical**2 / (2 * nu))
+    width = np.sqrt(np.maximum(np.square(sampled), NARROWEST) + critical**2 / (2 * nu))
     shrunk = critical * (1 - 1 / (4 * nu))
 
     def missed(bias: float) -> float:

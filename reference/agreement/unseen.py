@@ -10,8 +10,8 @@ bars after 97 passes of 16 samples, the worst at 50, and none after 1,600.
 The deterministic mode's probes are n even steps apart. A shadow, or a gap in one, that none of them met is shorter
 than a step: q < 1 / n for certain, and the mean is off by less than f / n, f the brightest place of the ray in the
 variable in which the steps are even. That is k = 1. It bounds what one such feature can do, so as a standard error it
-covers as many of one sign as the critical score, five or so. With 4,096 steps it is 5e-5 of the median pixel on
-`yeahright` and `many_objects`, 1.6e-4 on `wire_mesh`.
+covers as many of one sign as the critical score, five or so. With 4,096 steps, half of what it begins with, it
+is 5e-5 of the median pixel on `yeahright` and `many_objects`, 1.6e-4 on `wire_mesh`.
 """
 
 from __future__ import annotations

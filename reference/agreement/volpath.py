@@ -24,9 +24,10 @@ import numpy as np
 from reference.agreement.significance import smallest_bias
 from reference.convergence import Estimate, Progress, converge
 from reference.estimators import PILOT_SEED, Volpath
-from reference.fog_path import FogPath, bounded_path, fog_of, is_bounded
-from reference.goal import FEWEST_PASSES, Goal
-from reference.integrator import SingleScattering, delta_emitters, mi
+from reference.fog_path import bounded_path
+from reference.goal import FEWEST_IN_LIMIT, FEWEST_PASSES, Goal
+from reference.integrator import SingleScattering, mi
+from reference.moments import BlackReferenceError, Image, tiles
 from scenes.model import Scene
 
 # Samples of a pixel in a pass. A pass's mean is to be near a Gaussian, although volpath's samples are far from it:
@@ -41,40 +42,39 @@ class AsVolpath(SingleScattering):
         super().__init__(props)
         self.light_share = 1 - mi.math.ShadowEpsilon
 
-    def surface(self, scene: Any, ray: Any, path: FogPath, medium: Any, active: Any = True) -> Any:
-        """Direct light on the surface that the ray hits, by shadow rays that begin where Mitsuba's own do."""
-        radiance, fog, bounded = mi.Spectrum(0.0), fog_of(scene, medium), is_bounded(scene)
-        rest = mi.Ray3f(ray)
-        rest.o, rest.maxt = ray(path.t_last), ray.maxt - path.t_last
-        si = scene.ray_intersect(rest, active & path.blocked)
-        hit = active & path.blocked & si.is_valid()
-        for emitter in delta_emitters(scene):
-            ds, weight = emitter.sample_direction(si, mi.Point2f(0.5), hit)
-            lit, leg = self.surface_leg(scene, si, ds, bounded, path.ends_in_fog, hit)
-            value = self.reflected(si, ray, ds, lit)
-            radiance[lit] += self._attenuated(value * weight, fog, ray, path.fog_length + leg)
-        return radiance
-
     def surface_leg(self, scene: Any, si: Any, ds: Any, bounded: bool, in_fog: Any, active: Any) -> tuple[Any, Any]:
-        """Whether a light sees a surface, and over what length its light is attenuated on the way [scene unit]."""
+        """By shadow rays that begin where Mitsuba's own do, and end where they do."""
         way = si.spawn_ray_to(ds.p)
         if not bounded:
             return active & ~scene.ray_test(way, active), self.light_share * ds.dist
         walked = bounded_path(scene, way, in_fog, active)
         return active & ~walked.blocked, walked.fog_length
 
-    def reflected(self, si: Any, ray: Any, ds: Any, active: Any) -> Any:
-        """BSDF times cosine, Spectrum."""
-        return si.bsdf(ray).eval(mi.BSDFContext(), si, si.to_local(ds.d), active)
-
 
 mi.register_integrator("single_scattering_as_volpath", AsVolpath)
+
+
+class VolpathOfItsOwn(Volpath):
+    """`volpath` with random numbers that belong to the scene and its parameters.
+
+    With the same numbers for each, the six phase functions of a scene are off alike, and the error of what is pooled
+    over them would be up to the square root of six too small.
+    """
+
+    def __init__(self, scene: Scene, samples: int) -> None:
+        super().__init__(scene, samples)
+        # room for 4,096 passes of one
+        self._first = int(scene.digest[:4], 16) << 12
+
+    def one_pass(self, seed: int) -> dict[str, Image]:
+        """Radiance along each ray."""
+        return super().one_pass(self._first + seed)
 
 
 def estimate_volpath(
     scene: Scene, power: float, time_limit: float, report: Callable[[Progress], None] | None = None
 ) -> Estimate:
-    """Run `volpath`, never from the cache, until its image mean is known well enough.
+    """Run `volpath`, never from the cache, until its image mean is known well enough; of no light, zero.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def estimate_volpath(
     report : callable     called after each pass; its error is the image mean's
     """
     begin = time.perf_counter()
-    estimator, estimate, wanted = Volpath(scene, _samples_in(scene, time_limit)), None, FEWEST_PASSES
+    estimator, estimate, wanted = VolpathOfItsOwn(scene, _samples_in(scene, time_limit)), None, FEWEST_PASSES
     while True:
         left = time_limit - (time.perf_counter() - begin)
         if estimate and (left <= 0 or image_mean_power(estimate) <= power):
@@ -98,10 +98,41 @@ def estimate_volpath(
 
         # the number of samples ends each part, and the error of its pixels never
         limit = int(estimator.samples.mean()) * wanted
-        estimate = converge(estimator, Goal(1e-12, time_limit=max(left, 1e-3), sample_limit=limit), tell, estimate)
+        goal = Goal(1e-12, time_limit=max(left, 1e-3), sample_limit=limit)
+        try:
+            estimate = converge(estimator, goal, tell, estimate)
+        except BlackReferenceError:
+            estimate = _until_light(estimator, begin + time_limit)
         # half as many again at most, for the error is itself uncertain
         more = np.clip((image_mean_power(estimate) / power) ** 2 - 1, 0.05, 0.5)
         wanted = estimate.passes + int(np.ceil(estimate.passes * more))
+
+
+def _until_light(estimator: Volpath, end: float) -> Estimate:
+    """Passes from the first on until one brings light, or the time of `perf_counter` is over.
+
+    The mean of n passes of which one is not zero has a standard error of its own size.
+    """
+    begin, passes, image = time.perf_counter(), 0, np.zeros((*estimator.shape, 3))
+    while not image.any() and (passes < FEWEST_IN_LIMIT or time.perf_counter() < end):
+        image += estimator.one_pass(passes)["composite"]
+        passes += 1
+    image /= passes
+    pixels, blocks, whole = ({"composite": values} for values in (image, tiles(image), image.mean(axis=(0, 1))))
+    return Estimate(
+        mean=pixels,
+        standard_error=pixels,
+        tile_mean=blocks,
+        tile_error=blocks,
+        image_mean=whole,
+        image_error=whole,
+        samples=estimator.samples,
+        passes=passes,
+        planned_for=np.inf,
+        rel_error=1.0,
+        stopped_by="time",
+        seconds=time.perf_counter() - begin,
+    )
 
 
 def _samples_in(scene: Scene, time_limit: float) -> int:
@@ -116,8 +147,10 @@ def _samples_in(scene: Scene, time_limit: float) -> int:
 
 
 def image_mean_error(estimate: Estimate) -> float:
-    """Standard error of the image mean of the composite, all channels together, relative."""
+    """Standard error of the image mean of the composite, all channels together, relative; infinite of no light."""
     (layer,) = estimate.image_mean
+    if not estimate.image_mean[layer].any():
+        return np.inf
     return float(estimate.image_error[layer].mean() / estimate.image_mean[layer].mean())
 
 

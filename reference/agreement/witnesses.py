@@ -10,14 +10,16 @@ import numpy as np
 from reference.agreement.comparison import Comparison, compare
 from reference.agreement.measured import Witness, witness
 from reference.agreement.rim import rim_variance
+from reference.agreement.surfaces import Surfaces, compare_surfaces
 from reference.agreement.unseen import Unseen, unprobed_variance, unseen_variance
 from reference.agreement.volpath import estimate_volpath, image_mean_error
+from reference.checks.why_black import why_black
 from reference.convergence import Estimate, Progress, converge
 from reference.deterministic import Deterministic
 from reference.estimators import Equiangular, Volpath
 from reference.goal import Goal
 from reference.integrator import mi
-from reference.moments import Image
+from reference.moments import BlackReferenceError, Image
 from scenes.errors import InputError
 from scenes.model import Scene
 
@@ -31,8 +33,8 @@ VOLPATH_SHARE = 0.97
 REL_ERROR = 1e-3
 # strata of a pixel in a pass: what 32 passes of them may not have met is 4e-4 of the brightest sample
 FEWEST_STRATA = 256
-# steps between the deterministic mode's probes, at first eight times as many as by default: the picture is small
-PROBES = (4096, 8192, 32768)
+# steps between the deterministic mode's probes, at first sixteen times as many as by default: the picture is small
+PROBES = (8192, 16384, 32768)
 # [s] for the main estimator; measured on the shipped scenes at 64 x 64: 2 to 41, the most on `wire_mesh`
 LONGEST = 120.0
 
@@ -65,10 +67,11 @@ class Witnesses:
     airlight : tuple of Witness     the main estimator and the deterministic mode, of the scattering layer
     composite : tuple of Witness    the same two under `volpath`'s convention, and `volpath`; of all light
     surface_as_volpath : (H, W, 3)  the surfaces in them
+    surfaces : Surfaces             the shipped ones held against them
     unseen : Unseen
+    doubt : (H, W, 3)               variance of the deterministic mode for what it or float32 cannot know
     convention_shift : float        what that convention adds to the image mean, relative
-    convention_flips : int          pixels whose surface is lit under one convention and dark under the other
-    volpath_error : float           standard error of volpath's image mean, relative
+    volpath_error : float           standard error of volpath's image mean, relative; infinite where it met no light
     volpath_samples : int           of each pixel
     seconds : dict                  that each witness took
     """
@@ -76,9 +79,10 @@ class Witnesses:
     airlight: tuple[Witness, Witness]
     composite: tuple[Witness, Witness, Witness]
     surface_as_volpath: Image
+    surfaces: Surfaces
     unseen: Unseen
+    doubt: Image
     convention_shift: float
-    convention_flips: int
     volpath_error: float
     volpath_samples: int
     seconds: dict[str, float]
@@ -100,14 +104,17 @@ def call_witnesses(scene: Scene, time_limit: float, report: Report | None = None
     Raises
     ------
     InputError
-        In scalar_rgb; or an estimate is not finite, or zero everywhere.
+        In scalar_rgb; or an estimate is not finite, or one but volpath's is zero everywhere.
     """
     if mi.variant() == "scalar_rgb":
         raise InputError(
             "The witnesses are compared in an LLVM or CUDA variant of Mitsuba, and in scalar_rgb the reference is "
             "volpath itself: `airlight doctor` says what is missing."
         )
-    ours, surface = estimate_equiangular(scene, "single_scattering", report)
+    try:
+        ours, surface = estimate_equiangular(scene, "single_scattering", report)
+    except BlackReferenceError as error:
+        raise InputError(f"{error} {why_black(scene)}") from None
     short, short_surface = estimate_equiangular(scene, "single_scattering_as_volpath", report)
     exact = estimate_deterministic(scene)
     exact_short = estimate_deterministic(scene, 1 - mi.math.ShadowEpsilon)
@@ -129,9 +136,10 @@ def call_witnesses(scene: Scene, time_limit: float, report: Report | None = None
             witness(Volpath.name, volpath, rare),
         ),
         surface_as_volpath=short_surface,
+        surfaces=compare_surfaces(scene, surface, short_surface),
         unseen=unseen,
+        doubt=between,
         convention_shift=after / before - 1,
-        convention_flips=int(((surface > 0) != (short_surface > 0)).any(axis=-1).sum()),
         volpath_error=image_mean_error(volpath),
         volpath_samples=int(volpath.samples.mean()) * volpath.passes,
         seconds={"equiangular": ours.seconds, "deterministic": exact.seconds, "volpath": volpath.seconds},

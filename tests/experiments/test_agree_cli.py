@@ -27,6 +27,7 @@ app = typer.Typer()
 app.command()(agree)
 
 EMPTY, SIZE = Case("empty", {}), (16, 16)
+SCALES = ("pixels", "tiles", "image")
 
 
 @pytest.fixture(scope="module")
@@ -186,3 +187,45 @@ def test_what_cannot_be_meant_is_refused(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["empty", "--out", str(tmp_path)])
     assert isinstance(result.exception, InputError)
     assert "another page" in str(result.exception)
+    for name in ("agreement.json", "z.exr"):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / name).write_text("mine")
+        result = CliRunner().invoke(app, ["empty", "--out", str(folder)])
+        assert isinstance(result.exception, InputError)
+        assert "of no page of ours" in str(result.exception)
+        assert (folder / name).read_text() == "mine"
+
+
+def test_a_black_volpath_is_told(called, witnesses: Witnesses, monkeypatch, tmp_path: Path, capsys) -> None:
+    *ours, theirs = witnesses.composite
+    dark = {scale: replace(getattr(theirs, scale), mean=0 * getattr(theirs, scale).mean) for scale in SCALES}
+    wide = {scale: replace(one, variance=one.variance + 1e9) for scale, one in dark.items()}
+    black = replace(witnesses, composite=(*ours, replace(theirs, **wide)), volpath_error=np.inf, volpath_samples=99)
+    monkeypatch.setattr(cases, "call_witnesses", lambda *_: black)
+    assert report.run_agree([EMPTY], SIZE, 1.0, out=tmp_path)
+    printed = capsys.readouterr()
+    assert "The two that met light agree." in printed.out
+    assert "stopped at its time limit" not in printed.err
+    page = (tmp_path / "README.md").read_text()
+    assert page.count("| none | none | none | volpath met no light in 99 samples |") == 2
+    assert json.loads((tmp_path / "agreement.json").read_text())["cases"][0]["volpath_error"] is None
+
+
+def test_surfaces_that_disagree_are_an_error(called, witnesses: Witnesses, monkeypatch, tmp_path: Path, capsys) -> None:
+    bad = replace(witnesses, surfaces=replace(witnesses.surfaces, excess=1e-3))
+    monkeypatch.setattr(cases, "call_witnesses", lambda *_: bad)
+    assert not report.run_agree([EMPTY], SIZE, 1.0, out=tmp_path)
+    assert "These disagree: surfaces." in capsys.readouterr().out
+    assert "**not so in empty: surfaces: " in (tmp_path / "README.md").read_text()
+    assert not report.run_agree([EMPTY, EMPTY], SIZE, 1.0)
+    assert "These disagree: empty: surfaces; empty: surfaces." in capsys.readouterr().out
+
+
+def test_what_fails_unspoilt_too_cannot_tell(doubted, monkeypatch, capsys: pytest.CaptureFixture) -> None:
+    weak = replace(MUTATIONS[2], name="nothing at all", around=MUTATIONS[1].around)
+    monkeypatch.setattr(cases, "MUTATIONS", (weak,))
+    assert not report.run_agree([EMPTY], SIZE, 1.0, mutations=True)
+    printed = capsys.readouterr().out
+    assert "cannot tell" in printed
+    assert "Unnoticed: nothing at all (empty)." in printed

@@ -40,7 +40,8 @@ def measured(ours: float = 0.02, theirs: float = 0.4) -> Measurement:
         scene=load("sphere", size=(6, 4)),
         goal=Goal(0.005),
         ours=passes_of(ours, 0.5),
-        theirs=passes_of(theirs, 2.0),
+        # so far off that errors relative to it would be a third
+        theirs=replace(passes_of(theirs, 2.0), mean=3 * TRUTH),
         shadowless=passes_of(smooth, 0.3),
         one_stratum=passes_of(1.0, 0.1),
         strata=tuple(Strata(int(n), 0.01 * n, np.where(EDGES, 0.5 / n, 0.2 * n**-1.5)) for n in steps),
@@ -71,6 +72,18 @@ def test_the_seconds_are_those_of_a_known_variance() -> None:
     found = numbers(measured(ours=0.0501))
     assert found["ours_seconds_50"] == pytest.approx(50.2, rel=1e-3)
     assert found["ours_as_run_seconds_50"] == found["seconds_to_goal"] == pytest.approx(3 + 101 * 0.5)
+
+
+def test_ratios_are_taken_pixel_by_pixel() -> None:
+    # 400 to 1,849 passes of ours, as many as the pixel needs, and 400 times as many of theirs
+    deviations = 0.005 * np.arange(20, 44).reshape(4, 6, 1)
+    one = replace(measured(), ours=passes_of(deviations, 0.5), theirs=passes_of(20 * deviations, 2.0), plan_seconds=0.0)
+    found = numbers(one)
+    for part in (25, 50, 75):
+        assert found[f"ratio_{part}"] == pytest.approx(1600)
+        # whole passes: a rounding of the floats is one pass of 400
+        assert found[f"as_run_ratio_{part}"] == pytest.approx(1600, rel=1 / 400)
+    assert found["ours_seconds_75"] > 1.8 * found["ours_seconds_25"]
 
 
 def test_edges_and_exponents() -> None:
@@ -119,6 +132,13 @@ def test_passes_run_in_turn_and_their_spread_is_measured() -> None:
     for name, sigma in (("a", 0.02), ("b", 0.4)):
         assert np.median(found[name].deviation / TRUTH) == pytest.approx(sigma, rel=0.02)
         np.testing.assert_allclose(found[name].mean, TRUTH, rtol=5 * sigma / 20)
+
+
+def test_the_spread_of_few_passes_is_that_of_one() -> None:
+    shape = (64, 64, 3)
+    found = efficiency.interleave({"": lambda _: 1 + 0.1 * RNG.normal(size=shape)}, 4)[""]
+    # 12,288 variances of 3 degrees of freedom are known to 0.7 % together
+    assert np.mean(found.deviation**2) == pytest.approx(0.1**2, rel=0.04)
 
 
 def test_the_verdict_goes_by_the_smaller_ratio() -> None:

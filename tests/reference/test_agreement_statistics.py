@@ -43,6 +43,8 @@ def test_scores_are_finite_and_grow_with_t_through_the_change_of_formulas() -> N
         assert np.isfinite(z).all()
         assert (np.diff(z) > 0).all()
     assert (gaussian_score([1.0, -50.0], np.inf) == [1.0, -50.0]).all()
+    for dof in (1e10, 1e20, 1e300):
+        assert gaussian_score([0.5, -5.0, 50.0], dof) == pytest.approx([0.5, -5.0, 50.0], rel=1e-5)
 
 
 def test_critical_scores_are_sidaks() -> None:
@@ -159,6 +161,35 @@ def test_what_is_dark_in_both_is_left_out() -> None:
     assert compare(exact_witness("a", image), exact_witness("b", image * (1 + 1e-7))).agrees
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_what_is_no_number_is_refused(value: float) -> None:
+    image = np.ones(SHAPE)
+    other = image.copy()
+    other[5, 5, 0] = value
+    for pair in ((image, other), (other, image)):
+        with np.errstate(invalid="ignore"), pytest.raises(ValueError, match="pixels must be finite"):
+            compare(*(exact_witness("", one) for one in pair))
+
+
+@pytest.mark.parametrize("sampled", [0.0, 0.01, 0.3, 1.0])
+def test_an_allowance_catches_nothing(sampled: float) -> None:
+    rng = np.random.default_rng(4)
+    mean, error = rng.uniform(1, 2, 40), rng.uniform(0.01, 0.1, 40)
+    bias = smallest_bias(mean, error, np.full(40, np.inf), 120, np.full(40, sampled))
+    noise = sampled * error * rng.normal(size=(20000, 40))
+    caught = ((1 + 1e-5) * bias * mean + noise > critical_score(120) * error).any(axis=1).mean()
+    # nothing sampled: for certain; else as often as promised
+    assert caught == (1 if sampled == 0 else pytest.approx(0.95, abs=0.01))
+
+
+def test_what_is_allowed_is_known_from_what_is_sampled() -> None:
+    sampled = Measured.sampled(np.ones(3), np.full(3, 0.3), 8)
+    known = Measured.sampled(np.ones(3), np.full(3, 0.1), 0)
+    found = sampled - known + Measured.uncertain(np.full(3, 0.02))
+    assert found.variance == pytest.approx(0.12)
+    assert found.allowed == pytest.approx(0.03)
+
+
 def test_layers_add_up() -> None:
     rng = np.random.default_rng(5)
     estimate = simulated(rng, np.ones(SHAPE), np.full(SHAPE, 0.1), "scattering")
@@ -249,6 +280,16 @@ def test_a_common_bias_is_pooled(monkeypatch: pytest.MonkeyPatch) -> None:
     shifted = rounds(power, 500)
     assert np.mean([one.bias for one in shifted]) == pytest.approx(power, abs=4 * relative / np.sqrt(500))
     assert np.mean([not one.agrees for one in shifted]) == pytest.approx(0.95, abs=0.03)
+
+
+def test_the_pooled_error_is_meiers() -> None:
+    ((one, two),) = [of_known_means(np.random.default_rng(1), np.array([1.0, 1.0]), np.array([0.1, 0.2]), 5)]
+    variance = np.array([float(c.second.image.variance) for c in (one, two)])
+    weight = 1 / variance
+    # Meier (1953) of two means with 4 degrees of freedom each: v = (1 + (4 / W^2) sum w (W - w) / nu) / W
+    whole = weight.sum()
+    meier = (1 + 4 / whole**2 * sum(w * (whole - w) / 4 for w in weight)) / whole
+    assert pooled([one, two]).error == pytest.approx(meier**0.5, rel=1e-12)
 
 
 def test_nothing_to_pool_is_refused() -> None:

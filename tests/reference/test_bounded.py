@@ -38,6 +38,20 @@ def test_a_slab_under_the_sun(view: str, sigma_t: str, tmp_path: Path) -> None:
     np.testing.assert_allclose(estimate.mean["surface"], slab_surface(scene), rtol=2e-4, atol=1e-12)
 
 
+@pytest.mark.parametrize(("view", "far"), [("from within, downward", 2.2), ("from within, upward into the light", 1.3)])
+def test_a_far_plane_in_a_slab(view: str, far: float, tmp_path: Path) -> None:
+    """Some rays end in the fog, and some behind it."""
+    whole = slab_scattering(slab_scene(tmp_path, VIEWS[view]))
+    scene = slab_scene(tmp_path, VIEWS[view], far=far)
+    truth = slab_scattering(scene)
+    assert 0.1 < (truth < 0.99 * whole).mean() < 0.9
+    estimate = converge(Equiangular(scene), SHORT)
+    error = np.hypot(estimate.standard_error["scattering"], 2e-6 * truth)
+    # as above
+    assert np.abs((estimate.mean["scattering"] - truth) / error).max() < 6.5
+    assert (estimate.image_error["scattering"] < 5e-3 * truth.mean((0, 1))).all()
+
+
 @pytest.mark.parametrize("name", ["sun_in_a_box", "lamp_outside"])
 def test_volpath_agrees(name: str, others: Path) -> None:
     scene = load(others / f"{name}.xml", size=(48, 36))

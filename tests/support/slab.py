@@ -33,7 +33,9 @@ VIEWS = {
 }
 
 
-def slab_scene(folder: Path, view: View, sigma_t: str = GREY, direction: str = "0.6, -1, -0.3") -> Scene:
+def slab_scene(
+    folder: Path, view: View, sigma_t: str = GREY, direction: str = "0.6, -1, -0.3", far: float = 300
+) -> Scene:
     """Load a slab of 200 x 200, thin in y, over a floor."""
     path = folder / "slab.xml"
     path.write_text(
@@ -46,7 +48,7 @@ def slab_scene(folder: Path, view: View, sigma_t: str = GREY, direction: str = "
             <bsdf type='diffuse'><rgb name='reflectance' value='{REFLECTANCE}'/></bsdf></shape>
           <emitter type='directional'><vector name='direction' value='{direction}'/>
             <rgb name='irradiance' value='3, 2, 1'/></emitter>
-          <sensor type='perspective'><float name='fov' value='30'/><float name='far_clip' value='300'/>
+          <sensor type='perspective'><float name='fov' value='30'/><float name='far_clip' value='{far}'/>
             <transform name='to_world'><lookat origin='{view.origin}' target='{view.target}' up='0, 0, 1'/></transform>
             <film type='hdrfilm'/>{"<ref id='fog'/>" * view.inside}</sensor>
         </scene>"""
@@ -76,9 +78,10 @@ def slab_surface(scene: Scene) -> np.ndarray:
 
 
 def _geometry(scene: Scene) -> tuple[np.ndarray, ...]:
-    origin, direction, _ = scene.camera.rays()
+    origin, direction, t_max = scene.camera.rays()
     top = (TOP - origin[..., 1]) / direction[..., 1]
     bottom = (BOTTOM - origin[..., 1]) / direction[..., 1]
     sun = scene.lights[0].direction
-    begin, end = np.maximum(np.minimum(top, bottom), 0), np.maximum(top, bottom)
+    end = np.minimum(np.maximum(top, bottom), t_max)
+    begin = np.clip(np.minimum(top, bottom), 0, end)
     return origin, direction, begin, end, sun, -sun[1]
