@@ -65,7 +65,7 @@ class SingleScattering(mi.SamplingIntegrator):  # type: ignore[name-defined]
     def __init__(self, props: Any) -> None:
         super().__init__(props)
         if mi.variant().startswith("scalar"):
-            # it would take a millisecond a sample there
+            # which lack the pointers to media that it is made of, and would run Python for each sample
             raise ValueError("single_scattering needs an LLVM or CUDA variant; take `volpath` with max_depth = 2.")
         self.distance_samples = props.get("distance_samples", 16)
         self.light_share = props.get("light_share", 1.0)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles import SphereScene, piece_airlight, soft_spot_airlight, spot_airlight, whole_ray_airlight
-from scene_files import COLLINEAR, POINT, point, sphere, spot, write_scene
+from scene_files import COLLINEAR, POINT, SPOTS, point, sphere, spot, write_scene
 from shadow_volumes import SHADOWS, shadowed_airlight
 from slab import COLOURED, GREY, THICK, VIEWS, slab_scattering, slab_scene, slab_surface
 
@@ -75,15 +75,6 @@ def test_shadow_volumes(name: str) -> None:
     bright = truth > 0.1 * truth.mean()
     assert (off[bright] / truth[bright]).max() < 1e-3
     assert np.quantile((error / np.maximum(truth, 1e-30))[bright], 0.95) < 1e-3
-
-
-SPOTS = {
-    "down": ("0.3, 3.5, 0", "0, 0, 0", 24),
-    "towards the eye": ("0.2, 0.5, -3", "0, 0.2, 5", 30),
-    "away from the eye": ("0.4, 0.6, 5.5", "0, 0, -3", 20),
-    "wide": ("0.3, 2, 0", "0, 0, 0.5", 75),
-    "too wide to bound": ("0.3, 2, 0", "0, 0, 0.5", 89),
-}
 
 
 @pytest.mark.parametrize("name", SPOTS)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from oracles import SphereScene, soft_spot_airlight, spot_airlight, whole_ray_airlight
-from scene_files import COLLINEAR, POINT, point, sphere, spot, write_scene
+from scene_files import COLLINEAR, POINT, SPOTS, point, sphere, spot, write_scene
 from scipy import stats
 
 from reference import distances, estimators
@@ -107,15 +107,6 @@ def test_fog_with_the_shadow_of_a_sphere(parameters: dict) -> None:
     )
     assert shortest == np.inf or shortest < 0.3
     assert image_mean_z(estimate, truth) < 4
-
-
-SPOTS = {
-    "down": ("0.3, 3.5, 0", "0, 0, 0", 24),
-    "towards the eye": ("0.2, 0.5, -3", "0, 0.2, 5", 30),
-    "away from the eye": ("0.4, 0.6, 5.5", "0, 0, -3", 20),
-    "wide": ("0.3, 2, 0", "0, 0, 0.5", 75),
-    "too wide to bound": ("0.3, 2, 0", "0, 0, 0.5", 89),
-}
 
 
 @pytest.mark.parametrize("name", SPOTS)
