@@ -62,7 +62,6 @@ def sphere(x: float, y: float, z: float, radius: float) -> str:
     )
 
 
-# rays that point at the light or away from it, where float32 has no digits left for the angle between two distances
 # origin, target and half-angle of the cone [degrees]
 SPOTS = {
     "down": ("0.3, 3.5, 0", "0, 0, 0", 24),
@@ -71,6 +70,7 @@ SPOTS = {
     "wide": ("0.3, 2, 0", "0, 0, 0.5", 75),
     "too wide to bound": ("0.3, 2, 0", "0, 0, 0.5", 89),
 }
+# rays that point at the light or away from it, where float32 has no digits left for the angle between two distances
 COLLINEAR = {
     "at the eye": {"emitters": point(0, 0, 5)},
     "at the eye, thin fog, Mitsuba's own clips": {
