@@ -84,13 +84,11 @@ def prune(
 def _table(entries: list[Entry]) -> Table:
     from datetime import datetime
 
-    from rich.box import SIMPLE_HEAD
     from rich.markup import escape
-    from rich.table import Table
 
-    table = Table(
-        title="references", title_justify="left", caption_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0)
-    )
+    from experiments.console import plain_table
+
+    table = plain_table("references")
     for heading in ("scene", "estimator"):
         table.add_column(heading, overflow="fold")
     for heading in ("size", "error", "asked", "bytes", "last used"):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.table import Table
+from rich.text import Text
 
 
 def _console() -> Console:
@@ -24,3 +27,8 @@ def say(text: str) -> None:
 def warn(text: str) -> None:
     """Print a notice: the work goes on, but its reader should know."""
     notices.print(text, style="yellow", highlight=False, markup=False, soft_wrap=True)
+
+
+def plain_table(title: str | Text) -> Table:
+    """Make a table with a line under its head and no other, its texts to the left, and no columns yet."""
+    return Table(title=title, title_justify="left", caption_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))

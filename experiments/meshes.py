@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, DownloadColumn, TextColumn, TransferSpeedColumn
 from rich.table import Table
 
 from experiments.bars import Bars
-from experiments.console import say
+from experiments.console import plain_table, say
 from scenes.meshes import catalogue, procedural
 from scenes.meshes.fetch import Watcher
 from scenes.meshes.files import VARIABLE, MeshFile, available, sha256
@@ -56,7 +55,7 @@ def _describe(mesh: MeshFile) -> dict[str, Any]:
 
 def meshes_table(rows: list[dict[str, Any]]) -> Table:
     """The list for people."""
-    table = Table(title="meshes", title_justify="left", caption_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table = plain_table("meshes")
     for heading in ("name", "what", "from", "as measured", "licence", "path, or how to get it"):
         table.add_column(heading, overflow="fold", no_wrap=heading == "name")
     for row in rows:

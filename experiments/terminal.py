@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from experiments.bars import Bars
-from experiments.console import warn
+from experiments.console import plain_table, warn
 from experiments.metrics import Metrics
 from experiments.runner import Row, Watcher
 from reference.convergence import Progress as Convergence
@@ -133,13 +132,7 @@ def told(reference: Reference) -> str:
 
 def results_table(rows: list[Row]) -> Table:
     """Errors of each case: the scattering layer, and HDR-FLIP of the composite beside it."""
-    table = Table(
-        title="Scattering: errors against the reference",
-        title_justify="left",
-        caption_justify="left",
-        box=SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )
+    table = plain_table("Scattering: errors against the reference")
     # in a narrow terminal the names fold; the numbers never do
     table.add_column("scene", overflow="fold")
     table.add_column("technique", overflow="fold")

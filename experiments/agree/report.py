@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from experiments.agree.cases import OWN_POWER, Case, Finding, examine, failed
 from experiments.agree.page import convention_line, met_no_light, noticed_by, percent, pooled_line, write_page
 from experiments.bars import Bars
-from experiments.console import console, notices, say, warn
+from experiments.console import console, notices, plain_table, say, warn
 from experiments.terminal import announce_scene
 from reference.agreement.witnesses import IMAGE_POWER
 from reference.convergence import Progress
@@ -148,13 +147,7 @@ def case_line(finding: Finding) -> str:
 def agreement_table(finding: Finding) -> Table:
     """A line for each pair and test."""
     width, height = finding.about["size"].split()
-    table = Table(
-        title=f"{finding.case.name}, {width} x {height}: do independent estimates agree?",
-        title_justify="left",
-        caption_justify="left",
-        box=SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )
+    table = plain_table(f"{finding.case.name}, {width} x {height}: do independent estimates agree?")
     for heading in ("pair", "test"):
         table.add_column(heading, no_wrap=True)
     for heading in ("scores", "largest", "critical", "catches"):
@@ -186,13 +179,7 @@ def agreement_table(finding: Finding) -> Table:
 
 def mutations_table(finding: Finding) -> Table:
     """A line for each mutation and witness."""
-    table = Table(
-        title=f"{finding.case.name}: the estimator spoilt on purpose",
-        title_justify="left",
-        caption_justify="left",
-        box=SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )
+    table = plain_table(f"{finding.case.name}: the estimator spoilt on purpose")
     table.add_column("mutation", no_wrap=True)
     table.add_column("against", no_wrap=True)
     table.add_column("image mean", justify="right", no_wrap=True)

@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from analytic.thesis.audit import EQUATIONS, LARGEST_RIGHT, Entry, audit_one_by_one
 from experiments.audit.page import TITLE, write_page
 from experiments.bars import Bars
-from experiments.console import console, notices, say
+from experiments.console import console, notices, plain_table, say
 from experiments.pages import prepare_page
 
 __all__ = ["audit_table", "run_audit"]
@@ -73,12 +72,7 @@ def run_audit(as_json: bool = False, out: Path | None = None) -> bool:
 
 def audit_table(entries: Sequence[Entry]) -> Table:
     """An equation a line; what was found is in the page and in the JSON."""
-    table = Table(
-        title="Weng 2010: largest relative error against an independent truth",
-        title_justify="left",
-        box=SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )
+    table = plain_table("Weng 2010: largest relative error against an independent truth")
     table.add_column("equation", no_wrap=True)
     table.add_column("as printed", justify="right", no_wrap=True)
     table.add_column("repaired", justify="right", no_wrap=True)

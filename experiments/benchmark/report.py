@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
 from experiments.benchmark.measurement import Measurement, measure
 from experiments.benchmark.page import write_page
 from experiments.benchmark.summary import LINES, heading, method, numbers, verdict
-from experiments.console import console, notices, say
+from experiments.console import console, notices, plain_table, say
 from scenes.model import Scene
 
 
@@ -50,14 +49,10 @@ def run_benchmark(
 
 def benchmark_table(measurements: Sequence[Measurement]) -> Table:
     """A column a scene."""
-    table = Table(
-        title=Text(
+    table = plain_table(
+        Text(
             f"To a relative standard error of {measurements[0].goal.rel_error:.2%}: medians over the pixels [quartiles]"
-        ),
-        title_justify="left",
-        caption_justify="left",
-        box=SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
+        )
     )
     table.add_column("", no_wrap=True)
     for measured in measurements:

@@ -8,9 +8,9 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from importlib.metadata import version
 from pathlib import Path
 
+import cache_entries
 import numpy as np
 import pytest
 
@@ -20,15 +20,7 @@ from reference.estimators import Equiangular
 from scenes.errors import InputError
 
 Run = Callable[..., str]
-RECIPE = {
-    "scene": "abc",
-    "size": [640, 480],
-    "estimator": Equiangular.name,
-    "estimator_version": Equiangular.version,
-    "variant": "llvm_ad_rgb",
-    "mitsuba": version("mitsuba"),
-    "drjit": version("drjit"),
-}
+RECIPE = cache_entries.RECIPE | {"size": [640, 480]}
 RECORD = {
     "scene_name": "a [bold] fog",
     "parameters": {"g": "0.6"},

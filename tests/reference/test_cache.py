@@ -21,10 +21,7 @@ from reference.cache import entry_file
 from reference.cache.entry_file import DamagedError, OldFormatError
 from scenes.errors import InputError
 
-
-@pytest.fixture(autouse=True)
-def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+pytestmark = pytest.mark.usefixtures("own_cache")
 
 
 @pytest.fixture

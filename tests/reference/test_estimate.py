@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from cache_entries import names
 
 from reference import cache, convergence
 from reference.estimate import Reference, deterministic_reference, estimate_reference
@@ -15,10 +15,7 @@ from scenes.errors import InputError
 from scenes.loader import load
 from scenes.model import Scene
 
-
-@pytest.fixture(autouse=True)
-def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+pytestmark = pytest.mark.usefixtures("own_cache")
 
 
 @pytest.fixture(scope="module")
@@ -40,6 +37,14 @@ def test_a_reference_is_estimated_once(scene: Scene) -> None:
     for name in ("passes", "planned_for", "rel_error", "stopped_by", "seconds"):
         assert getattr(first.estimate, name) == getattr(again.estimate, name)
     assert (first.estimate.samples == again.estimate.samples).all()
+    (listed,) = cache.entries()
+    assert (listed.scene, listed.image_size, listed.estimator) == ("sphere", (12, 9), first.recipe["estimator"])
+    assert (listed.asked, listed.rel_error, listed.finished) == (0.02, first.estimate.rel_error, True)
+    assert (listed.stale, listed.damaged) == ("", "")
+    assert (first.passes_before, again.passes_before) == (0, first.estimate.passes)
+    assert first.recipe == again.recipe
+    # bit for bit
+    assert all((first.layers[name] == again.layers[name]).all() for name in first.layers)
 
 
 def test_a_looser_goal_takes_what_is_there(scene: Scene) -> None:
@@ -189,7 +194,9 @@ def test_a_damaged_entry_is_made_again_and_said(scene: Scene) -> None:
     assert again.passes_before == 0
     assert identical(first, again)
     (notice,) = again.notices
-    assert "damaged" in notice
+    assert str(entry.path.with_suffix(".damaged")) in notice
+    assert names() == {entry.path.name, entry.path.with_suffix(".damaged").name}
+    assert first.recipe == again.recipe
     assert estimate_reference(scene, Goal(0.1)).notices == ()
 
 
