@@ -6,7 +6,9 @@ from rich.table import Table
 
 from analytic import MODELS
 from experiments.suite import shipped as shipped_suites
-from gpu_impl.techniques import AIRLIGHT_MODELS, TECHNIQUES, VISIBILITIES
+from gpu_impl.airlight_models import AIRLIGHT_MODELS
+from gpu_impl.techniques import TECHNIQUES
+from gpu_impl.visibilities import VISIBILITIES
 from scenes.catalogue import FOLDER, shipped
 from scenes.meshes.files import available
 

@@ -10,14 +10,15 @@ import numpy as np
 
 from gpu_impl.device import Device, shared_device
 from gpu_impl.frame import Frame
-from gpu_impl.geometry import GBuffer, Geometry, render_gbuffer
+from gpu_impl.geometry import Geometry
 from gpu_impl.light_uniforms import placed
-from gpu_impl.scattering import add_scattering
-from gpu_impl.shadow_map import ShadowMap, check_map_size, render_shadow_map
-from gpu_impl.surface import add_surface
+from gpu_impl.passes.geometry import GBuffer, render_gbuffer
+from gpu_impl.passes.scattering import add_scattering
+from gpu_impl.passes.shadow_map import ShadowMap, check_map_size, render_shadow_map
+from gpu_impl.passes.surface import add_surface
+from gpu_impl.passes.upsampling import upsample
 from gpu_impl.techniques import Technique
 from gpu_impl.textures import PictureTextures
-from gpu_impl.upsample import upsample
 from scenes.errors import InputError
 from scenes.model import Scene
 

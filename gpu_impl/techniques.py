@@ -1,16 +1,14 @@
-"""The registry: every technique is one cell of visibility strategy x airlight model x lattice.
-
-Adding a strategy or a model takes one GLSL file under `shaders/` and one line here.
-"""
+"""The registry: every technique is one cell of visibility strategy x airlight model x lattice."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from numbers import Integral
 from typing import Any
 
-from gpu_impl.quadrature_nodes import gauss_legendre_glsl, rational_rule_glsl
+from gpu_impl.airlight_models import AIRLIGHT_MODELS
+from gpu_impl.visibilities import VISIBILITIES
 from scenes.errors import InputError
 from scenes.messages import readable
 from scenes.model import Scene
@@ -18,47 +16,6 @@ from scenes.model import Scene
 DOWNSAMPLES = (1, 2, 4, 8)
 MOST_STEPS = 1 << 20
 CELL_STEPS = 128
-QUADRATURE_NODES = 24
-
-
-@dataclass(frozen=True)
-class AirlightShader:
-    """How much light one lit piece of a ray sends to the eye."""
-
-    source: str
-    what: str
-    phases: tuple[str, ...] | None = None  # the phase functions it takes; None for all
-    any_light: bool = True  # whether it takes directional lights, and lights outside a bounded medium
-    generated: Mapping[str, str] = field(default_factory=dict)  # texts of includes that are computed
-
-
-@dataclass(frozen=True)
-class Visibility:
-    """Which pieces of a ray are lit."""
-
-    source: str
-    what: str
-
-
-AIRLIGHT_MODELS = {
-    "riemann": AirlightShader("airlight/riemann.glsl", "one point sample a piece (Nishita 1987)"),
-    "weng2010": AirlightShader(
-        "airlight/weng2010.glsl", "isotropic closed form, repaired", phases=("isotropic",), any_light=False
-    ),
-    "quadrature": AirlightShader(
-        "airlight/quadrature.glsl",
-        f"{QUADRATURE_NODES} tuned nodes under a rational map",
-        generated={
-            "<rational-rule>": rational_rule_glsl(QUADRATURE_NODES),
-            "<gauss-legendre>": gauss_legendre_glsl(QUADRATURE_NODES),
-        },
-    ),
-}
-
-VISIBILITIES = {
-    "uniform_march": Visibility("visibility/uniform_march.glsl", "equal steps over the ray"),
-    "lit_intervals": Visibility("visibility/lit_intervals.glsl", "samples merged to lit intervals (Algorithm 4.1)"),
-}
 
 
 @dataclass(frozen=True)

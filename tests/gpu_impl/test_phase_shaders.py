@@ -8,7 +8,7 @@ import pytest
 from analytic import phase
 from gpu_impl.context import shared_context
 from gpu_impl.device import Device
-from gpu_impl.scattering import phase_uniforms
+from gpu_impl.passes.scattering import phase_uniforms
 
 CASES = [
     {"name": "isotropic"},

@@ -12,9 +12,9 @@ from gpu_impl.context import create_context, shared_context
 from gpu_impl.device import Device
 from gpu_impl.geometry import Geometry
 from gpu_impl.light_uniforms import light_uniforms
+from gpu_impl.passes.shadow_map import render_shadow_map, tile_count
 from gpu_impl.renderer import Renderer
 from gpu_impl.shader_source import ShaderSource, compile_program, set_uniforms
-from gpu_impl.shadow_map import render_shadow_map, tile_count
 from gpu_impl.techniques import TECHNIQUES, find_technique
 from gpu_impl.textures import PictureTextures
 from scenes.errors import InputError

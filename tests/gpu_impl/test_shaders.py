@@ -8,10 +8,11 @@ import pytest
 
 from analytic.phase import PHASES
 from gpu_impl import shader_source
+from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.context import shared_context
 from gpu_impl.device import Device
 from gpu_impl.shader_source import SHADERS, ShaderError, ShaderSource, compile_program
-from gpu_impl.techniques import AIRLIGHT_MODELS, VISIBILITIES
+from gpu_impl.visibilities import VISIBILITIES
 
 FILES = sorted(path.relative_to(SHADERS).as_posix() for path in SHADERS.rglob("*.glsl"))
 INCLUDES = [name for name in FILES if not name.endswith((".vert.glsl", ".frag.glsl"))]

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import Device
-from gpu_impl.geometry import GBuffer, camera_uniforms
 from gpu_impl.light_uniforms import light_defines, light_uniforms
+from gpu_impl.passes.geometry import GBuffer
+from gpu_impl.passes.shadow_map import ShadowMap, tile_count
 from gpu_impl.shader_source import set_uniforms
-from gpu_impl.shadow_map import ShadowMap, tile_count
 from gpu_impl.textures import PictureTextures
 from scenes.model import Light, Scene
 

@@ -9,13 +9,16 @@ from typing import Any
 import numpy as np
 
 from analytic.phase import Phase
+from gpu_impl.airlight_models import AIRLIGHT_MODELS
+from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import Device
-from gpu_impl.geometry import GBuffer, camera_uniforms
 from gpu_impl.light_uniforms import light_defines, light_uniforms
+from gpu_impl.passes.geometry import GBuffer
+from gpu_impl.passes.shadow_map import ShadowMap, tile_count
 from gpu_impl.shader_source import set_uniforms
-from gpu_impl.shadow_map import ShadowMap, tile_count
-from gpu_impl.techniques import AIRLIGHT_MODELS, VISIBILITIES, Technique
+from gpu_impl.techniques import Technique
 from gpu_impl.textures import PictureTextures
+from gpu_impl.visibilities import VISIBILITIES
 from scenes.model import Light, Scene
 
 # binding of `phase_table` in phase/tabulated.glsl

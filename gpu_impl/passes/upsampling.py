@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from gpu_impl.device import Device
-from gpu_impl.geometry import GBuffer
+from gpu_impl.passes.geometry import GBuffer
 from gpu_impl.shader_source import set_uniforms
 from scenes.model import Camera
 
