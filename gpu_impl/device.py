@@ -49,15 +49,9 @@ class Device:
         texture.filter = (self.context.NEAREST, self.context.NEAREST)
         return texture
 
-    def clear(self, texture: Any) -> None:
-        """Set a texture to zero."""
-        target = self.context.framebuffer(color_attachments=[texture])
-        target.clear()
-        target.release()
-
-    def fill(self, program: Any, texture: Any, add: bool = False) -> None:
-        """Run a program on every pixel of a texture, in place of what is there or added to it."""
-        target = self.context.framebuffer(color_attachments=[texture])
+    def fill(self, program: Any, *textures: Any, add: bool = False) -> None:
+        """Run a program on every pixel of textures of one size, in place of what is there or added to it."""
+        target = self.context.framebuffer(color_attachments=textures)
         target.use()
         if add:
             self.context.enable(self.context.BLEND)

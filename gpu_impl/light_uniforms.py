@@ -29,14 +29,35 @@ def placed(light: Light, bounds: np.ndarray) -> Light:
     return replace(light, position=centre + light.direction * (nearest - centre @ light.direction - depth))
 
 
+def fog_defines(scene: Scene) -> dict[str, int]:
+    """Defines of fog.glsl."""
+    holder = scene.boundary
+    return {
+        "FOG_PLANES": 0 if holder is None else len(holder.planes),
+        "FOG_BALL": int(holder is not None and holder.ball is not None),
+    }
+
+
+def fog_uniforms(scene: Scene) -> dict[str, Any]:
+    """The medium, and the uniforms of fog.glsl."""
+    uniforms: dict[str, Any] = {
+        "sigma_s": tuple(np.broadcast_to(scene.medium.sigma_s, 3).tolist()),
+        "sigma_t": tuple(np.broadcast_to(scene.medium.sigma_t, 3).tolist()),
+    }
+    if scene.boundary is not None:
+        uniforms["fog_planes"] = [tuple(plane) for plane in scene.boundary.planes]
+        if scene.boundary.ball is not None:
+            uniforms["fog_ball"] = tuple(scene.boundary.ball)
+    return uniforms
+
+
 def light_defines(scene: Scene, light: Light) -> dict[str, int]:
     """Defines that decide which parts of the shaders one light in the scene's fog needs."""
     holder = scene.boundary
     in_fog = holder is None or (light.kind != "directional" and bool(holder.contains(light.position)))
     return {
+        **fog_defines(scene),
         "WHOLE_LEG": int(in_fog),
-        "FOG_PLANES": 0 if holder is None else len(holder.planes),
-        "FOG_BALL": int(holder is not None and holder.ball is not None),
         "SPOT_TEXTURE": int(light.texture is not None),
     }
 
@@ -44,8 +65,7 @@ def light_defines(scene: Scene, light: Light) -> dict[str, int]:
 def light_uniforms(scene: Scene, light: Light, pictures: PictureTextures) -> dict[str, Any]:
     """Uniforms of a pass that asks for one light in the scene's medium; a spot's picture is bound."""
     uniforms: dict[str, Any] = {
-        "sigma_s": tuple(np.broadcast_to(scene.medium.sigma_s, 3).tolist()),
-        "sigma_t": tuple(np.broadcast_to(scene.medium.sigma_t, 3).tolist()),
+        **fog_uniforms(scene),
         "light.position": tuple(light.position),
         "light.direction": tuple(light.direction),
         "light.intensity": tuple(light.intensity),
@@ -56,8 +76,4 @@ def light_uniforms(scene: Scene, light: Light, pictures: PictureTextures) -> dic
     if light.texture is not None:
         uniforms |= pictures.bind(light.texture, SPOT_UNIT, "spot_texture", "spot_bitmap")
         uniforms["world_to_light"] = np.linalg.inv(light.to_world)
-    if scene.boundary is not None:
-        uniforms["fog_planes"] = [tuple(plane) for plane in scene.boundary.planes]
-        if scene.boundary.ball is not None:
-            uniforms["fog_ball"] = tuple(scene.boundary.ball)
     return uniforms

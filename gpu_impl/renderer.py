@@ -1,4 +1,4 @@
-"""Draws one scene with one technique: shadow map, surface, scattering, upsampling."""
+"""Draws one scene with one technique, pass by pass."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from gpu_impl.device import Device, shared_device
 from gpu_impl.frame import Frame
 from gpu_impl.geometry import Geometry
 from gpu_impl.light_uniforms import placed
+from gpu_impl.passes.combination import combine
 from gpu_impl.passes.geometry import GBuffer, render_gbuffer
 from gpu_impl.passes.scattering import add_scattering
 from gpu_impl.passes.shadow_map import ShadowMap, check_map_size, render_shadow_map
 from gpu_impl.passes.surface import add_surface
-from gpu_impl.passes.upsampling import upsample
 from gpu_impl.techniques import Technique
 from gpu_impl.textures import PictureTextures
 from scenes.errors import InputError
@@ -25,16 +25,21 @@ from scenes.model import Scene
 
 @dataclass(frozen=True)
 class View:
-    """What the eye and the lights see, before any technique: the same for all that share a shadow-map size."""
+    """What the eye and the lights see: the same for all techniques that share what `view_key` names."""
 
     gbuffer: GBuffer
-    surface: Any
     shadow_maps: tuple[ShadowMap, ...]
+    surface: Any
 
     def release(self) -> None:
         """Give the textures back."""
         for texture in (*self.gbuffer.textures, self.surface, *(found.texture for found in self.shadow_maps)):
             texture.release()
+
+
+def view_key(technique: Technique) -> tuple[object, ...]:
+    """The settings of a technique that decide its `View`."""
+    return technique.shadow_map, technique.composition
 
 
 class Renderer:
@@ -52,7 +57,7 @@ class Renderer:
         self._geometry = Geometry(self.device, scene)
         self._pictures = PictureTextures(self.device)
         self._lights = tuple(placed(light, self._geometry.bounds) for light in scene.lights)
-        self._views: dict[int, View] = {}
+        self._views: dict[tuple[object, ...], View] = {}
 
     def __enter__(self) -> Renderer:
         return self
@@ -83,18 +88,18 @@ class Renderer:
         for light in self.scene.lights:
             check_map_size(self.device, light, technique.shadow_map)
         try:
-            if technique.shadow_map not in self._views:
-                self._views[technique.shadow_map] = self._see(technique.shadow_map)
-            view = self._views[technique.shadow_map]
-            texture = self._scatter(technique, view)
+            key = view_key(technique)
+            if key not in self._views:
+                self._views[key] = self._see(technique)
+            view = self._views[key]
+            surface, scattering = self._layers(technique, view)
         except moderngl.Error as error:
             camera = self.scene.camera
             raise InputError(
                 f"OpenGL cannot draw {camera.width} x {camera.height} pixels with {technique.shadow_map} texels of "
                 f"shadow map ({' '.join(str(error).split())}): make one of them smaller."
             ) from None
-        surface, scattering, gbuffer = (_read(t) for t in (view.surface, texture, view.gbuffer.normal_and_distance))
-        texture.release()
+        gbuffer = _read(view.gbuffer.normal_and_distance)
         if not (np.isfinite(surface).all() and np.isfinite(scattering).all()):
             raise InputError(
                 f"{technique.name} draws {self.scene.path} with pixels that are not finite: bring its intensities, "
@@ -117,34 +122,63 @@ class Renderer:
         for _ in range(frames):
             self.device.context.finish()
             begin = time.perf_counter()
-            # camera and lights may have moved: nothing is kept from the frame before
-            view = self._see(technique.shadow_map)
-            texture = self._scatter(technique, view)
+            self._display(technique)
             self.device.context.finish()
             times.append(1e3 * (time.perf_counter() - begin))
-            texture.release()
-            view.release()
         return float(np.median(times))
 
-    def _see(self, shadow_map_size: int) -> View:
-        """Run the passes that no technique changes; the caller releases the view."""
+    def _display(self, technique: Technique) -> None:
+        """Draw a frame as an application would show it; nothing is kept from the one before or for the next."""
+        view = self._see(technique)
+        airlight, composite = self._scatter(technique, view), self._full_size_texture()
+        combine(self.device, (composite,), technique, self.scene, view.gbuffer, view.surface, airlight)
+        for texture in (airlight, composite, view):
+            texture.release()
+
+    def _see(self, technique: Technique) -> View:
+        """Run the passes before the fog; the caller releases the view."""
         device, scene = self.device, self.scene
         gbuffer = render_gbuffer(device, self._geometry, scene.camera, self._pictures)
-        surface = device.texture((scene.camera.width, scene.camera.height), 4)
-        device.clear(surface)
-        shadow_maps = tuple(render_shadow_map(device, self._geometry, light, shadow_map_size) for light in self._lights)
-        for light, shadow_map in zip(self._lights, shadow_maps, strict=True):
-            add_surface(device, surface, scene, light, gbuffer, shadow_map, self._pictures)
-        return View(gbuffer, surface, shadow_maps)
+        shadow_maps = tuple(
+            render_shadow_map(device, self._geometry, light, technique.shadow_map) for light in self._lights
+        )
+        surface = self._full_size_texture()
+        for i, (light, shadow_map) in enumerate(zip(self._lights, shadow_maps, strict=True)):
+            add_surface(
+                device,
+                surface,
+                scene,
+                light,
+                gbuffer,
+                shadow_map,
+                self._pictures,
+                composition=technique.composition,
+                first=i == 0,
+            )
+        return View(gbuffer, shadow_maps, surface)
 
     def _scatter(self, technique: Technique, view: View) -> Any:
-        """Run the technique's own passes; the caller releases the texture."""
+        """Evaluate the fog on every N-th pixel; the caller releases the texture."""
         device, scene, step = self.device, self.scene, technique.downsample
         texture = device.texture((-(-scene.camera.width // step), -(-scene.camera.height // step)), 4)
-        device.clear(texture)
-        for light, shadow_map in zip(self._lights, view.shadow_maps, strict=True):
-            add_scattering(device, texture, technique, scene, light, view.gbuffer, shadow_map, self._pictures)
-        return upsample(device, texture, scene.camera, view.gbuffer, step) if step > 1 else texture
+        for i, (light, shadow_map) in enumerate(zip(self._lights, view.shadow_maps, strict=True)):
+            add_scattering(
+                device, texture, technique, scene, light, view.gbuffer, shadow_map, self._pictures, first=i == 0
+            )
+        return texture
+
+    def _layers(self, technique: Technique, view: View) -> tuple[np.ndarray, np.ndarray]:
+        """The surface's light as it reaches the eye and the airlight, each (H, W, 4)."""
+        airlight = self._scatter(technique, view)
+        layers = self._full_size_texture(), self._full_size_texture()
+        combine(self.device, layers, technique, self.scene, view.gbuffer, view.surface, airlight)
+        surface, scattering = (_read(layer) for layer in layers)
+        for texture in (airlight, *layers):
+            texture.release()
+        return surface, scattering
+
+    def _full_size_texture(self) -> Any:
+        return self.device.texture((self.scene.camera.width, self.scene.camera.height), 4)
 
 
 def _read(texture: Any) -> np.ndarray:

@@ -14,6 +14,11 @@ from scenes.messages import readable
 from scenes.model import Scene
 
 DOWNSAMPLES = (1, 2, 4, 8)
+# how pixels between evaluated ones get their value; a file under shaders/upsampling and a line
+UPSAMPLINGS = {"bilateral": "upsampling/bilateral.glsl"}
+# how surface and airlight come together: with fog on both of the surface light's legs, or as Eq. 14 prints it,
+# without fog between light and surface
+COMPOSITIONS = ("physical", "printed")
 MOST_STEPS = 1 << 20
 CELL_STEPS = 128
 
@@ -29,6 +34,8 @@ class Technique:
     steps : int                   samples of the visibility along a ray
     shadow_map : int              texels on a side of each shadow-map tile
     downsample : int              every how many pixels fog is evaluated, in x and in y
+    upsample : str                one of `UPSAMPLINGS`
+    composition : str             one of `COMPOSITIONS`
     """
 
     name: str
@@ -37,11 +44,15 @@ class Technique:
     steps: int = 64
     shadow_map: int = 1024
     downsample: int = 1
+    upsample: str = "bilateral"
+    composition: str = "physical"
 
     def check(self) -> None:
         """Raise InputError where a part is unknown or a setting cannot be used."""
         _choose("visibility", self.visibility, VISIBILITIES)
         _choose("airlight model", self.airlight, AIRLIGHT_MODELS)
+        _choose("upsampling", self.upsample, UPSAMPLINGS)
+        _choose("composition", self.composition, COMPOSITIONS)
         for setting in ("steps", "shadow_map", "downsample"):
             value = getattr(self, setting)
             # True is an int to Python, and to nobody else

@@ -34,8 +34,10 @@ def add_scattering(
     gbuffer: GBuffer,
     shadow_map: ShadowMap,
     pictures: PictureTextures,
+    *,
+    first: bool,
 ) -> None:
-    """Add one light's airlight to `target`, whose pixels stand for every N-th of the image's."""
+    """Write the first light's airlight to `target`, every N-th pixel of the image, or add another's."""
     grey = np.ptp(np.broadcast_to(scene.medium.sigma_t, 3)) == 0
     model = AIRLIGHT_MODELS[technique.airlight]
     program = device.program(
@@ -52,7 +54,7 @@ def add_scattering(
     set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))
     set_uniforms(program, {"downsample": technique.downsample})
     with phase_uniforms(device, program, scene.phase):
-        device.fill(program, target, add=True)
+        device.fill(program, target, add=not first)
 
 
 @contextmanager

@@ -22,9 +22,25 @@ def add_surface(
     gbuffer: GBuffer,
     shadow_map: ShadowMap,
     pictures: PictureTextures,
+    *,
+    composition: str,
+    first: bool,
 ) -> None:
-    """Add one light's direct light on diffuse and Phong surfaces, attenuated on both legs, to `target`."""
-    program = device.program("surface.frag.glsl", defines={"TILES": tile_count(light), **light_defines(scene, light)})
+    """Write the direct light of the first light on diffuse and Phong surfaces to `target`, or add another's.
+
+    Parameters
+    ----------
+    target : RGBA32F       light as it leaves the surfaces
+    composition : str      one of `gpu_impl.techniques.COMPOSITIONS`
+    """
+    program = device.program(
+        "surface.frag.glsl",
+        defines={
+            **light_defines(scene, light),
+            "TILES": tile_count(light),
+            "LIGHT_LEG": int(composition == "physical"),
+        },
+    )
     set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, pictures))
     set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))
-    device.fill(program, target, add=True)
+    device.fill(program, target, add=not first)

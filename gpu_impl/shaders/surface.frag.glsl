@@ -1,5 +1,5 @@
-// "Render Scene" of Weng 2010, Fig. 1.3: direct light of one light on diffuse and Phong surfaces,
-// attenuated on both legs.
+// "Render Scene" of Weng 2010, Fig. 1.3: direct light of one light on diffuse and Phong surfaces, as it leaves them.
+// Fog attenuates it on its way to the surface, which the print of Eq. 14 leaves out (LIGHT_LEG 0).
 #include "camera_ray.glsl"
 #include "light.glsl"
 #include "fog.glsl"
@@ -32,8 +32,6 @@ void main() {
     if (cos_mirror > 0.0)
         reflected += specular.rgb * (specular.a + 2.0) * 0.159154943091895 * pow(cos_mirror, specular.a);
     if (surface_in_shadow(light, point, texelFetch(triangle_normal, pixel, 0).xyz)) return;
-    vec2 eye_leg = fog_interval(ray.o, ray.d, vec2(0.0, surface.w));
-    float legs = eye_leg.y - eye_leg.x + light_leg(light, point);
-    result.rgb = reflected * cos_light * light.intensity * angular(light, point) / (light.directional ? 1.0 : d * d)
-               * exp(-sigma_t * legs);
+    result.rgb = reflected * cos_light * light.intensity * angular(light, point) / (light.directional ? 1.0 : d * d);
+    if (LIGHT_LEG == 1) result.rgb *= exp(-sigma_t * light_leg(light, point));
 }

@@ -22,7 +22,7 @@ PASSES = [
     ("geometry.vert.glsl", "geometry.frag.glsl"),
     ("shadow_map.vert.glsl", "shadow_map.frag.glsl"),
     ("fullscreen.vert.glsl", "surface.frag.glsl"),
-    ("fullscreen.vert.glsl", "upsample.frag.glsl"),
+    ("fullscreen.vert.glsl", "combination.frag.glsl"),
 ]
 RAY_AND_LIGHT = "Ray(vec3(0), vec3(0, 0, 1), 1.0), Light(vec3(1), vec3(0, 0, 1), vec3(1), 3.14, 3.14, false)"
 # what the contract leaves to the other parts, and a call, so that the linker keeps what is tested
@@ -31,12 +31,16 @@ STUBS = {
     "visibility": "void lit(float t0, float dt, float w) { result += vec4(t0, dt, w, 1.0); }\n"
     f"void main() {{ result = vec4(0.0); visibility({RAY_AND_LIGHT}); }}",
     "phase": "void main() { result = vec4(phase(vec2(0.25, 0.75)), phase_scale(), 0.0, 0.0); }",
+    "upsampling": "void main() { result = upsampled(ivec2(0)); }",
     "": "void main() { result = vec4(1.0); }",
 }
 
 
 # what a pass defines for a cube map, coloured fog that fills space and a light without a picture
 PLAIN = {
+    "LIGHT_LEG": 1,
+    "DOWNSAMPLED": 1,
+    "SPLIT": 1,
     "TILES": 6,
     "GREY": 0,
     "STEPS": 4,
@@ -68,7 +72,7 @@ def compiled(source: ShaderSource) -> None:
 def test_an_include_compiles_on_its_own(name: str) -> None:
     folder = Path(name).parent.as_posix().removeprefix(".")
     # parts of a model are not models
-    if name in ("airlight/exponential_integral.glsl", "airlight/part_of_the_leg.glsl"):
+    if name in ("airlight/exponential_integral.glsl", "airlight/part_of_the_leg.glsl", "upsampling/lattice.glsl"):
         folder = ""
     # a part of the quadrature asks for what comes before it there
     before = '#include "<phase>"\n#include "<gauss-legendre>"\n' if name == "airlight/part_of_the_leg.glsl" else ""
@@ -80,7 +84,7 @@ def test_an_include_compiles_on_its_own(name: str) -> None:
 @pytest.mark.parametrize(("vertex", "fragment"), PASSES)
 @pytest.mark.parametrize("defines", VARIANTS, ids=str)
 def test_a_pass_compiles(vertex: str, fragment: str, defines: dict[str, int]) -> None:
-    source = ShaderSource(fragment, defines)
+    source = ShaderSource(fragment, defines, {"<upsampling>": "upsampling/bilateral.glsl"})
     compile_program(shared_context(), ShaderSource(vertex), source).release()
 
 
