@@ -247,12 +247,9 @@ def read(path: str | Path) -> Picture:
 
 def _technique(name: str, settings: dict[str, Any]) -> Technique:
     """Look a technique up, with settings that it has."""
-    from dataclasses import MISSING, fields
+    from gpu_impl.techniques import SETTINGS, find_technique
 
-    from gpu_impl.techniques import Technique, find_technique
-
-    # what has no default is which technique it is
-    known = [field.name for field in fields(Technique) if field.default is not MISSING]
+    known = ("visibility", "airlight", *SETTINGS)
     for setting in settings:
         if setting not in known:
             raise InputError(f"There is no setting '{setting}'; a technique has {', '.join(known)}.")

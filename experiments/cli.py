@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 import typer
 
+from experiments.accuracy_cli import accuracy
 from experiments.agree_cli import agree
 from experiments.benchmark_cli import benchmark_app
 from experiments.cache_cli import cache_app
@@ -26,6 +27,17 @@ from experiments.options import (
     TimeLimit,
     given_beside,
     parse_parameters,
+)
+from experiments.technique_options import (
+    AirlightModel,
+    Composition,
+    Downsample,
+    ShadowMapSize,
+    ShadowStorage,
+    Steps,
+    SurfaceShadows,
+    Upsample,
+    Visibility,
 )
 from experiments.termination import terminated_cleanly
 from reference.goal import Goal
@@ -93,9 +105,15 @@ def render(
     ] = "Weng2010",
     parameter: Parameters = None,
     size: Size = None,
-    steps: Annotated[int | None, typer.Option(help="Samples of the visibility along a ray.")] = None,
-    shadow_map: Annotated[int | None, typer.Option(help="Texels on a side of the shadow map.")] = None,
-    downsample: Annotated[int | None, typer.Option(help="Evaluate fog on every N-th pixel: 1, 2, 4 or 8.")] = None,
+    visibility: Visibility = None,
+    airlight_model: AirlightModel = None,
+    steps: Steps = None,
+    shadow_map: ShadowMapSize = None,
+    downsample: Downsample = None,
+    upsample: Upsample = None,
+    surface_shadows: SurfaceShadows = None,
+    shadow_storage: ShadowStorage = None,
+    composition: Composition = None,
     again: Annotated[
         Path | None,
         typer.Option(
@@ -124,7 +142,17 @@ def render(
     from gpu_impl.renderer import Renderer
     from gpu_impl.techniques import find_technique
 
-    settings = {"steps": steps, "shadow_map": shadow_map, "downsample": downsample}
+    settings = {
+        "visibility": visibility,
+        "airlight": airlight_model,
+        "steps": steps,
+        "shadow_map": shadow_map,
+        "downsample": downsample,
+        "upsample": upsample,
+        "surface_shadows": surface_shadows,
+        "shadow_storage": shadow_storage,
+        "composition": composition,
+    }
     check_writable(out, ".exr")
     loaded = airlight.load(scene, size, **parse_parameters(parameter))
     announce_scene(loaded)
@@ -270,5 +298,5 @@ def run(
     say(f"Results: {folder.resolve()}")
 
 
-for command in (agree, audit, atlas, quadrature, spectra):
+for command in (accuracy, agree, audit, atlas, quadrature, spectra):
     app.command()(command)

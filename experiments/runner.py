@@ -20,7 +20,7 @@ from experiments.sheet import prepare_sheets, summary, write_sheet
 from experiments.suite import Suite
 from gpu_impl.frame import Frame
 from gpu_impl.renderer import Renderer
-from gpu_impl.techniques import find_technique
+from gpu_impl.techniques import SETTINGS, find_technique
 from reference.convergence import Progress
 from reference.estimate import Reference, estimate_reference
 from scenes.errors import InputError
@@ -131,7 +131,7 @@ def case_name(scene: Scene, frame: Frame) -> str:
     own = find_technique(technique.name)
     changed = [
         f"-{setting}-{getattr(technique, setting)}"
-        for setting in ("steps", "shadow_map", "downsample")
+        for setting in SETTINGS
         if getattr(technique, setting) != getattr(own, setting)
     ]
     return f"{scene.name}-{technique.name}{''.join(changed)}"

@@ -28,12 +28,18 @@ class _Strict(BaseModel):
 
 
 class TechniqueChoice(_Strict):
-    """A technique by name, with settings that differ from its own."""
+    """A technique by name, with parts and settings that differ from its own: those of `gpu_impl.techniques`."""
 
     name: str
+    visibility: str | None = None
+    airlight: str | None = None
     steps: Whole | None = None
     shadow_map: Whole | None = None
     downsample: Whole | None = None
+    upsample: str | None = None
+    surface_shadows: str | None = None
+    shadow_storage: str | None = None
+    composition: str | None = None
 
     def technique(self) -> Technique:
         """Look it up."""

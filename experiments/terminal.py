@@ -12,6 +12,7 @@ from experiments.bars import Bars
 from experiments.console import plain_table, warn
 from experiments.metrics import Metrics
 from experiments.runner import Row, Watcher
+from gpu_impl.techniques import SETTINGS
 from reference.convergence import Progress as Convergence
 from reference.estimate import Reference
 from scenes.llvm import LlvmChoice, choose_llvm
@@ -168,7 +169,7 @@ def results_table(rows: list[Row]) -> Table:
 
 
 def _case(row: Row) -> tuple[str, ...]:
-    return tuple(str(row[key]) for key in ("scene", "technique", "steps", "shadow_map", "downsample"))
+    return tuple(str(row[key]) for key in ("scene", "technique", *SETTINGS))
 
 
 def metrics_table(layer: str, metrics: Metrics) -> Table:

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from gpu_impl.context import gl_info, shared_context
-from gpu_impl.shader_source import ShaderSource, compile_program
+from gpu_impl.shader_source import ShaderSource, compile_compute, compile_program
 
 
 class Device:
@@ -23,6 +23,7 @@ class Device:
         self.info = gl_info(self.context)
         self.largest_texture: int = self.context.info["GL_MAX_TEXTURE_SIZE"]
         self._programs: dict[tuple, Any] = {}
+        self._spare: dict[tuple, list[Any]] = {}
 
     def program(
         self,
@@ -43,11 +44,44 @@ class Device:
             )
         return self._programs[key]
 
-    def texture(self, size: tuple[int, int], components: int) -> Any:
-        """Make a float32 texture that is read without interpolation."""
-        texture = self.context.texture(size, components, dtype="f4")
+    def compute(self, name: str, defines: Mapping[str, object] | None = None) -> Any:
+        """Return the compute program of a shader file below `shaders/`."""
+        key = (name, *sorted((defines or {}).items()))
+        if key not in self._programs:
+            self._programs[key] = compile_compute(self.context, ShaderSource(name, defines))
+        return self._programs[key]
+
+    def texture(self, size: tuple[int, ...], components: int, dtype: str = "f4") -> Any:
+        """Take a texture that is read without interpolation, an array where `size` has layers; it holds anything.
+
+        A frame takes what the frame before gave back: new ones cost as much as the passes that fill them.
+        """
+        spare = self._spare.get((size, components, dtype))
+        if spare:
+            return spare.pop()
+        new = self.context.texture if len(size) == 2 else self.context.texture_array
+        texture = new(size, components, dtype=dtype)
         texture.filter = (self.context.NEAREST, self.context.NEAREST)
         return texture
+
+    def buffer(self, size: int) -> Any:
+        """Take a buffer of `size` bytes, new or given back; what it holds is undefined."""
+        spare = self._spare.get((size,))
+        return spare.pop() if spare else self.context.buffer(reserve=size)
+
+    def give_back(self, *memory: Any) -> None:
+        """Keep textures and buffers for whoever asks for one of their kind next."""
+        for one in memory:
+            texture = hasattr(one, "components")
+            kind = (one.size, one.components, one.dtype) if texture else (one.size,)
+            self._spare.setdefault(kind, []).append(one)
+
+    def release_spare_textures(self) -> None:
+        """Release what was given back."""
+        for textures in self._spare.values():
+            for texture in textures:
+                texture.release()
+        self._spare.clear()
 
     def fill(self, program: Any, *textures: Any, add: bool = False) -> None:
         """Run a program on every pixel of textures of one size, in place of what is there or added to it."""
@@ -63,7 +97,8 @@ class Device:
         target.release()
 
     def release(self) -> None:
-        """Give the programs back."""
+        """Release programs and spare textures."""
+        self.release_spare_textures()
         for program in self._programs.values():
             program.release()
         self._programs.clear()

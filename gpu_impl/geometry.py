@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from gpu_impl.closed_mesh import distance_to_box, outward_side
 from gpu_impl.device import Device
 from gpu_impl.shader_source import set_uniforms
 from gpu_impl.textures import PictureTextures
-from scenes.model import Mesh, Scene, Texture
+from scenes.model import Array, Mesh, Scene, Texture
 
 # how geometry.frag.glsl numbers `Mesh.mapping`
 MAPPINGS = ("uv", "sphere", "cylinder", "disk")
@@ -21,6 +22,8 @@ class MeshBuffers:
 
     def __init__(self, context: Any, mesh: Mesh) -> None:
         vertices, normals, faces = mesh.vertices, mesh.normals, mesh.faces
+        self._box = vertices.min(axis=0), vertices.max(axis=0)
+        self._outward_side = outward_side(vertices, faces)
         if normals is None:
             # a flat face shares its vertices with no other
             vertices = vertices[faces].reshape(-1, 3)
@@ -34,14 +37,21 @@ class MeshBuffers:
         self._normals = context.buffer(np.ascontiguousarray(normals, np.float32))
         self._indices = context.buffer(np.ascontiguousarray(faces, np.uint32))
         self.material = mesh.material
+        self.has_picture = isinstance(mesh.material.diffuse, Texture)
         self._coordinates = None
-        if mesh.coordinates is not None and isinstance(mesh.material.diffuse, Texture):
+        if mesh.coordinates is not None and self.has_picture:
             coordinates = mesh.coordinates if mesh.normals is not None else mesh.coordinates[mesh.faces].reshape(-1, 3)
             self._coordinates = context.buffer(np.ascontiguousarray(coordinates, np.float32))
         self._mapping = MAPPINGS.index(mesh.mapping)
 
-    def draw(self, program: Any, uniforms: Mapping[str, Any]) -> None:
-        """Draw with the attributes that the program has."""
+    def draw(self, program: Any, uniforms: Mapping[str, Any], eye: Array | None, reach: float = 0.0) -> None:
+        """Draw with the attributes that the program has.
+
+        Parameters
+        ----------
+        eye : (3,) or None    where it is seen from; None from infinitely far
+        reach : float         how far from there something may be clipped away [scene unit]
+        """
         attributes = [(self._positions, "3f", "in_position")]
         if "in_normal" in program:
             attributes.append((self._normals, "3f", "in_normal"))
@@ -49,7 +59,11 @@ class MeshBuffers:
             attributes.append((self._coordinates, "3f", "in_coordinates"))
         set_uniforms(program, uniforms)
         array = self._context.vertex_array(program, attributes, self._indices)
+        if self._outward_side and (eye is None or distance_to_box(eye, *self._box) > reach):
+            self._context.cull_face = "back" if self._outward_side > 0 else "front"
+            self._context.enable(self._context.CULL_FACE)
         array.render()
+        self._context.disable(self._context.CULL_FACE)
         array.release()
 
     def release(self) -> None:
@@ -65,7 +79,6 @@ class MeshBuffers:
         uniforms: dict[str, Any] = {
             "diffuse": (*plain, float(material.two_sided)),
             "specular": (*material.specular.tolist(), material.exponent),
-            "has_picture": isinstance(picture, Texture),
             "mapping": self._mapping,
         }
         if isinstance(picture, Texture):
@@ -85,12 +98,14 @@ class Geometry:
 
     Attributes
     ----------
-    bounds : (8, 3)    see `bounding_box`
+    bounds : (8, 3)       see `bounding_box`
+    is_specular : bool    whether a material has a specular part
     """
 
     def __init__(self, device: Device, scene: Scene) -> None:
         self.meshes = [MeshBuffers(device.context, mesh) for mesh in scene.meshes]
         self.bounds = bounding_box(scene)
+        self.is_specular = any((mesh.material.specular > 0).any() for mesh in scene.meshes)
 
     def release(self) -> None:
         """Give all buffers back."""

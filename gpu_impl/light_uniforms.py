@@ -33,6 +33,7 @@ def fog_defines(scene: Scene) -> dict[str, int]:
     """Defines of fog.glsl."""
     holder = scene.boundary
     return {
+        "GREY": int(np.ptp(np.broadcast_to(scene.medium.sigma_t, 3)) == 0),
         "FOG_PLANES": 0 if holder is None else len(holder.planes),
         "FOG_BALL": int(holder is not None and holder.ball is not None),
     }
@@ -58,6 +59,7 @@ def light_defines(scene: Scene, light: Light) -> dict[str, int]:
     return {
         **fog_defines(scene),
         "WHOLE_LEG": int(in_fog),
+        "SPOT": 0 if light.kind != "spot" else 1 if light.beam_width >= light.cutoff_angle else 2,
         "SPOT_TEXTURE": int(light.texture is not None),
     }
 
@@ -72,6 +74,7 @@ def light_uniforms(scene: Scene, light: Light, pictures: PictureTextures) -> dic
         "light.beam_width": light.beam_width,
         "light.cutoff_angle": light.cutoff_angle,
         "light.directional": light.kind == "directional",
+        "tan_cutoff": float(np.tan(light.cutoff_angle)),
     }
     if light.texture is not None:
         uniforms |= pictures.bind(light.texture, SPOT_UNIT, "spot_texture", "spot_bitmap")

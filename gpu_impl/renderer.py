@@ -12,13 +12,20 @@ from gpu_impl.device import Device, shared_device
 from gpu_impl.frame import Frame
 from gpu_impl.geometry import Geometry
 from gpu_impl.light_uniforms import placed
+from gpu_impl.motion import moved
 from gpu_impl.passes.combination import combine
 from gpu_impl.passes.geometry import GBuffer, render_gbuffer
-from gpu_impl.passes.scattering import add_scattering
+from gpu_impl.passes.scattering import COUNTERS, add_scattering
+from gpu_impl.passes.shadow_buffer import in_buffer
 from gpu_impl.passes.shadow_map import ShadowMap, check_map_size, render_shadow_map
+from gpu_impl.passes.shadow_volume import render_shadow_polygons
 from gpu_impl.passes.surface import add_surface
+from gpu_impl.passes.tone_mapping import tone_map
+from gpu_impl.silhouettes import Adjacency
 from gpu_impl.techniques import Technique
 from gpu_impl.textures import PictureTextures
+from gpu_impl.timing import NO_CLOCK, Clock
+from gpu_impl.visibilities import VISIBILITIES
 from scenes.errors import InputError
 from scenes.model import Scene
 
@@ -31,15 +38,14 @@ class View:
     shadow_maps: tuple[ShadowMap, ...]
     surface: Any
 
-    def release(self) -> None:
-        """Give the textures back."""
-        for texture in (*self.gbuffer.textures, self.surface, *(found.texture for found in self.shadow_maps)):
-            texture.release()
+    def give_back(self, device: Device) -> None:
+        """Give the textures and buffers back."""
+        device.give_back(*self.gbuffer.textures, self.surface, *(found.memory for found in self.shadow_maps))
 
 
 def view_key(technique: Technique) -> tuple[object, ...]:
     """The settings of a technique that decide its `View`."""
-    return technique.shadow_map, technique.composition
+    return technique.shadow_map, technique.shadow_storage, technique.surface_shadows, technique.composition
 
 
 class Renderer:
@@ -58,6 +64,8 @@ class Renderer:
         self._pictures = PictureTextures(self.device)
         self._lights = tuple(placed(light, self._geometry.bounds) for light in scene.lights)
         self._views: dict[tuple[object, ...], View] = {}
+        self._clock: Clock = NO_CLOCK
+        self._adjacency: Adjacency | None = None
 
     def __enter__(self) -> Renderer:
         return self
@@ -68,10 +76,14 @@ class Renderer:
     def release(self) -> None:
         """Give back what the scene holds on the GPU."""
         self._geometry.release()
+        if self._adjacency:
+            self._adjacency.release()
+            self._adjacency = None
         self._pictures.release()
         for view in self._views.values():
-            view.release()
+            view.give_back(self.device)
         self._views.clear()
+        self.device.release_spare_textures()
 
     def render(self, technique: Technique) -> Frame:
         """Draw a frame; its view is kept for other techniques.
@@ -116,56 +128,156 @@ class Renderer:
             scene_digest=self.scene.digest,
         )
 
+    def picture(self, technique: Technique, exposure: float = 1.0) -> np.ndarray:
+        """Draw a frame for display; see `tone_map` for `exposure` and what is raised.
+
+        Returns
+        -------
+        (H, W, 3) uint8
+            sRGB, row 0 at the top.
+        """
+        technique.check()
+        technique.check_scene(self.scene)
+        composite = self._composite(technique)
+        display = self.device.texture(composite.size, 4, "f1")
+        try:
+            tone_map(self.device, display, composite, exposure)
+            return np.frombuffer(display.read(), np.uint8).reshape(display.height, display.width, 4)[..., :3]
+        finally:
+            self.device.give_back(composite, display)
+
     def milliseconds(self, technique: Technique, frames: int = 5) -> float:
-        """Median wall-clock time of a frame, all passes up to glFinish, after `render` has warmed the driver up."""
-        times = []
-        for _ in range(frames):
-            self.device.context.finish()
+        """Median of `frame_time`, after `render` has warmed the driver up."""
+        return float(np.median([self.frame_time(technique, number) for number in range(frames)]))
+
+    def frame_time(self, technique: Technique, number: int, clock: Clock = NO_CLOCK) -> float:
+        """Draw frame `number` of a scene in which eye and lights move (see `moved`) as an application would show it.
+
+        Parameters
+        ----------
+        clock : told of each pass, such as a `gpu_impl.timing.PassClock`
+
+        Returns
+        -------
+        float
+            Wall-clock time, all passes up to glFinish [ms].
+        """
+        still, context = (self.scene, self._lights), self.device.context
+        self.scene = moved(self.scene, number, self._geometry.bounds)
+        self._lights = tuple(placed(light, self._geometry.bounds) for light in self.scene.lights)
+        self._clock = clock
+        try:
+            context.finish()
             begin = time.perf_counter()
             self._display(technique)
-            self.device.context.finish()
-            times.append(1e3 * (time.perf_counter() - begin))
-        return float(np.median(times))
+            context.finish()
+            return 1e3 * (time.perf_counter() - begin)
+        finally:
+            (self.scene, self._lights), self._clock = still, NO_CLOCK
+
+    def counts(self, technique: Technique) -> dict[str, np.ndarray]:
+        """Count what the scattering pass does for each ray that it evaluates, all lights together.
+
+        Returns
+        -------
+        dict
+            Arrays (h, w) of every `technique.downsample`-th pixel by their names in `COUNTERS`: lit pieces handed to
+            the airlight model, texels read from shadow maps, exponential integrals, and exponentials, a colour's
+            counted as three.
+        """
+        technique.check()
+        technique.check_scene(self.scene)
+        view = self._see(technique)
+        counts = self._lattice_texture(technique)
+        airlight = self._scatter(technique, view, counts)
+        found = _read(counts)
+        self.device.give_back(airlight, counts)
+        view.give_back(self.device)
+        return {name: found[..., channel] for channel, name in enumerate(COUNTERS)}
 
     def _display(self, technique: Technique) -> None:
         """Draw a frame as an application would show it; nothing is kept from the one before or for the next."""
+        self.device.give_back(self._composite(technique))
+
+    def _composite(self, technique: Technique) -> Any:
+        """Draw surfaces and fog together; the caller gives back the texture."""
         view = self._see(technique)
         airlight, composite = self._scatter(technique, view), self._full_size_texture()
-        combine(self.device, (composite,), technique, self.scene, view.gbuffer, view.surface, airlight)
-        for texture in (airlight, composite, view):
-            texture.release()
+        with self._clock.time_pass("combination"):
+            combine(self.device, (composite,), technique, self.scene, view.gbuffer, view.surface, airlight)
+        self.device.give_back(airlight)
+        view.give_back(self.device)
+        return composite
 
     def _see(self, technique: Technique) -> View:
-        """Run the passes before the fog; the caller releases the view."""
+        """Run the passes before the fog; the caller gives back the view."""
         device, scene = self.device, self.scene
-        gbuffer = render_gbuffer(device, self._geometry, scene.camera, self._pictures)
-        shadow_maps = tuple(
-            render_shadow_map(device, self._geometry, light, technique.shadow_map) for light in self._lights
-        )
-        surface = self._full_size_texture()
-        for i, (light, shadow_map) in enumerate(zip(self._lights, shadow_maps, strict=True)):
-            add_surface(
-                device,
-                surface,
-                scene,
-                light,
-                gbuffer,
-                shadow_map,
-                self._pictures,
-                composition=technique.composition,
-                first=i == 0,
+        with self._clock.time_pass("geometry"):
+            gbuffer = render_gbuffer(device, self._geometry, scene.camera, self._pictures)
+        with self._clock.time_pass("shadow map"):
+            shadow_maps = tuple(
+                render_shadow_map(device, self._geometry, light, technique.shadow_map) for light in self._lights
             )
+            if technique.shadow_storage == "buffer":
+                shadow_maps = tuple(in_buffer(device, shadow_map) for shadow_map in shadow_maps)
+        surface = self._full_size_texture()
+        with self._clock.time_pass("surface"):
+            for i, (light, shadow_map) in enumerate(zip(self._lights, shadow_maps, strict=True)):
+                add_surface(
+                    device,
+                    surface,
+                    technique,
+                    scene,
+                    light,
+                    gbuffer,
+                    shadow_map,
+                    self._pictures,
+                    first=i == 0,
+                )
         return View(gbuffer, shadow_maps, surface)
 
-    def _scatter(self, technique: Technique, view: View) -> Any:
-        """Evaluate the fog on every N-th pixel; the caller releases the texture."""
-        device, scene, step = self.device, self.scene, technique.downsample
-        texture = device.texture((-(-scene.camera.width // step), -(-scene.camera.height // step)), 4)
-        for i, (light, shadow_map) in enumerate(zip(self._lights, view.shadow_maps, strict=True)):
-            add_scattering(
-                device, texture, technique, scene, light, view.gbuffer, shadow_map, self._pictures, first=i == 0
-            )
+    def _scatter(self, technique: Technique, view: View, counts: Any = None) -> Any:
+        """Evaluate the fog on every N-th pixel, and count into a texture of that size; the caller gives back the result."""
+        texture, polygons = self._lattice_texture(technique), self._shadow_polygons(technique, view)
+        with self._clock.time_pass("scattering"):
+            for i, (light, shadow_map) in enumerate(zip(self._lights, view.shadow_maps, strict=True)):
+                add_scattering(
+                    self.device,
+                    texture,
+                    technique,
+                    self.scene,
+                    light,
+                    view.gbuffer,
+                    shadow_map,
+                    self._pictures,
+                    polygons=polygons,
+                    layer=i,
+                    counts=counts,
+                    first=i == 0,
+                )
+        if polygons:
+            self.device.give_back(polygons)
         return texture
+
+    def _shadow_polygons(self, technique: Technique, view: View) -> Any:
+        """Draw the shadow polygons that the technique asks for, a texture that the caller gives back; None for none."""
+        wanted = VISIBILITIES[technique.visibility].polygons
+        if wanted is None:
+            return None
+        if self._adjacency is None:
+            self._adjacency = Adjacency(self.device.context, self.scene)
+        with self._clock.time_pass("shadow polygons"):
+            return render_shadow_polygons(
+                self.device,
+                self._adjacency,
+                self.scene,
+                self._lights,
+                view.gbuffer,
+                view.shadow_maps,
+                self._pictures,
+                downsample=technique.downsample,
+                repaired=wanted == "repaired",
+            )
 
     def _layers(self, technique: Technique, view: View) -> tuple[np.ndarray, np.ndarray]:
         """The surface's light as it reaches the eye and the airlight, each (H, W, 4)."""
@@ -173,9 +285,12 @@ class Renderer:
         layers = self._full_size_texture(), self._full_size_texture()
         combine(self.device, layers, technique, self.scene, view.gbuffer, view.surface, airlight)
         surface, scattering = (_read(layer) for layer in layers)
-        for texture in (airlight, *layers):
-            texture.release()
+        self.device.give_back(airlight, *layers)
         return surface, scattering
+
+    def _lattice_texture(self, technique: Technique) -> Any:
+        camera, step = self.scene.camera, technique.downsample
+        return self.device.texture((-(-camera.width // step), -(-camera.height // step)), 4)
 
     def _full_size_texture(self) -> Any:
         return self.device.texture((self.scene.camera.width, self.scene.camera.height), 4)

@@ -84,6 +84,14 @@ def compile_program(context: Any, vertex: ShaderSource, fragment: ShaderSource) 
         raise ShaderError(source.name_files(str(error))) from None
 
 
+def compile_compute(context: Any, source: ShaderSource) -> Any:
+    """Compile a compute shader; raises as `compile_program` does."""
+    try:
+        return context.compute_shader(source.text)
+    except Exception as error:
+        raise ShaderError(source.name_files(str(error))) from None
+
+
 def set_uniforms(program: Any, values: Mapping[str, Any]) -> None:
     """Set the uniforms that the program has; a compiler drops those that a variant does not use.
 

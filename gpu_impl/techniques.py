@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterator
+from dataclasses import MISSING, dataclass, fields, replace
 from numbers import Integral
 from typing import Any
 
@@ -13,13 +13,24 @@ from scenes.errors import InputError
 from scenes.messages import readable
 from scenes.model import Scene
 
-DOWNSAMPLES = (1, 2, 4, 8)
-# how pixels between evaluated ones get their value; a file under shaders/upsampling and a line
-UPSAMPLINGS = {"bilateral": "upsampling/bilateral.glsl"}
-# how surface and airlight come together: with fog on both of the surface light's legs, or as Eq. 14 prints it,
-# without fog between light and surface
-COMPOSITIONS = ("physical", "printed")
-MOST_STEPS = 1 << 20
+# how pixels between evaluated ones get their value: a file under shaders/upsampling and a line
+UPSAMPLINGS = {name: f"upsampling/{name}.glsl" for name in ("bilateral", "nearest_depth", "bilinear")}
+# what a setting may be, where it is one of a few
+CHOICES: dict[str, Collection[object]] = {
+    "visibility": VISIBILITIES,
+    "airlight": AIRLIGHT_MODELS,
+    "downsample": (1, 2, 4, 8),
+    "upsample": UPSAMPLINGS,
+    # shadows on surfaces: of a light without extent, or filtered to look soft (percentage-closer filtering)
+    "surface_shadows": ("hard", "soft"),
+    # where the scattering pass reads the shadow map: a texture, or a storage buffer, as the thesis has a buffer
+    "shadow_storage": ("texture", "buffer"),
+    # how surface and airlight come together: with fog on both of the surface light's legs, or as Weng 2010, Eq. 14,
+    # prints it, without fog between light and surface
+    "composition": ("physical", "printed"),
+}
+# the least and the most of the others
+RANGES = {"steps": (1, 1 << 20), "shadow_map": (1, 1 << 14)}
 CELL_STEPS = 128
 
 
@@ -30,12 +41,11 @@ class Technique:
     Attributes
     ----------
     name : str
-    visibility, airlight : str    keys of `VISIBILITIES` and `AIRLIGHT_MODELS`
+    visibility, airlight : str    which parts it is made of
     steps : int                   samples of the visibility along a ray
     shadow_map : int              texels on a side of each shadow-map tile
     downsample : int              every how many pixels fog is evaluated, in x and in y
-    upsample : str                one of `UPSAMPLINGS`
-    composition : str             one of `COMPOSITIONS`
+    upsample, surface_shadows, shadow_storage, composition : str    see `CHOICES`
     """
 
     name: str
@@ -45,25 +55,28 @@ class Technique:
     shadow_map: int = 1024
     downsample: int = 1
     upsample: str = "bilateral"
+    surface_shadows: str = "hard"
+    shadow_storage: str = "texture"
     composition: str = "physical"
 
     def check(self) -> None:
         """Raise InputError where a part is unknown or a setting cannot be used."""
-        _choose("visibility", self.visibility, VISIBILITIES)
-        _choose("airlight model", self.airlight, AIRLIGHT_MODELS)
-        _choose("upsampling", self.upsample, UPSAMPLINGS)
-        _choose("composition", self.composition, COMPOSITIONS)
         for setting in ("steps", "shadow_map", "downsample"):
             value = getattr(self, setting)
             # True is an int to Python, and to nobody else
             if isinstance(value, bool) or not isinstance(value, Integral):
                 raise InputError(f"{setting} is {value!r}; use a whole number.")
-        if not 1 <= self.steps <= MOST_STEPS:
-            raise InputError(f"steps is {self.steps}; use 1 to {MOST_STEPS}.")
-        if not 1 <= self.shadow_map <= 16384:
-            raise InputError(f"shadow_map is {self.shadow_map}; use 1 to 16384 texels.")
-        if self.downsample not in DOWNSAMPLES:
-            raise InputError(f"downsample is {self.downsample}; use {', '.join(map(str, DOWNSAMPLES))}.")
+        for setting, (least, most) in RANGES.items():
+            if not least <= getattr(self, setting) <= most:
+                raise InputError(f"{setting} is {getattr(self, setting)}; use {least} to {most}.")
+        for setting, known in CHOICES.items():
+            value = getattr(self, setting)
+            # asked of a tuple, which takes what cannot be hashed too
+            if value not in tuple(known):
+                what = {"airlight": "airlight model"}.get(setting, setting)
+                raise InputError(
+                    f"There is no {what} '{readable(str(value))}'; use one of {', '.join(map(str, known))}."
+                )
 
     def check_scene(self, scene: Scene) -> None:
         """Raise InputError where the airlight model cannot take the scene's phase function or one of its lights."""
@@ -84,22 +97,35 @@ class Technique:
                 )
 
 
+# the settings that a technique may be given, by name
+SETTINGS = tuple(field.name for field in fields(Technique) if field.default is not MISSING)
+
+
+def _of_the_thesis() -> Iterator[Technique]:
+    """Weng 2010 with each of its airlight models, called after what follows the model's colon."""
+    for model in AIRLIGHT_MODELS:
+        family, _, variant = model.partition(":")
+        if family == "weng2010":
+            visibility = "lit_intervals:printed" if variant == "printed" else "lit_intervals"
+            yield Technique(f"Weng2010:{variant}".removesuffix(":"), visibility, model, steps=CELL_STEPS)
+
+
 TECHNIQUES = {
     technique.name: technique
     for technique in (
         Technique("Nishita1987", "uniform_march", "riemann"),
-        Technique("Weng2010", "lit_intervals", "weng2010", steps=CELL_STEPS),
+        *_of_the_thesis(),
     )
 }
 
 
-def find_technique(name: str, **settings: int | None) -> Technique:
+def find_technique(name: str, **settings: Any) -> Technique:
     """Look a technique up and change those of its settings that are not None.
 
     Parameters
     ----------
     name : a published technique, or any other cell as `visibility+airlight`, such as `lit_intervals+quadrature`
-    settings : fields of `Technique`
+    settings : fields of `Technique`; with another visibility or airlight model it is another cell, and is called so
 
     Raises
     ------
@@ -113,15 +139,11 @@ def find_technique(name: str, **settings: int | None) -> Technique:
         technique = Technique(name, visibility, model, steps=CELL_STEPS)
     else:
         raise InputError(
-            f"There is no technique '{name}'; use one of {', '.join(TECHNIQUES)}, or a cell of the product such as "
-            "lit_intervals+quadrature."
+            f"There is no technique '{readable(name)}'; use one of {', '.join(TECHNIQUES)}, or a cell of the product "
+            "such as lit_intervals+quadrature."
         )
-    changes: dict[str, Any] = {key: value for key, value in settings.items() if value is not None}
-    technique = replace(technique, **changes)
-    technique.check()
-    return technique
-
-
-def _choose(what: str, name: str, known: Iterable[str]) -> None:
-    if name not in known:
-        raise InputError(f"There is no {what} '{readable(name)}'; the known ones are {', '.join(known)}.")
+    changed = replace(technique, **{key: value for key, value in settings.items() if value is not None})
+    if (changed.visibility, changed.airlight) != (technique.visibility, technique.airlight):
+        changed = replace(changed, name=f"{changed.visibility}+{changed.airlight}")
+    changed.check()
+    return changed

@@ -14,13 +14,16 @@ from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import Device
 from gpu_impl.light_uniforms import light_defines, light_uniforms
 from gpu_impl.passes.geometry import GBuffer
-from gpu_impl.passes.shadow_map import ShadowMap, tile_count
+from gpu_impl.passes.shadow_map import ShadowMap
+from gpu_impl.passes.shadow_volume import bind_polygons
 from gpu_impl.shader_source import set_uniforms
 from gpu_impl.techniques import Technique
 from gpu_impl.textures import PictureTextures
 from gpu_impl.visibilities import VISIBILITIES
 from scenes.model import Light, Scene
 
+# what a counting build counts, in the order of the channels of shaders/counting.glsl
+COUNTERS = ("pieces", "shadow_map_reads", "exponential_integrals", "exponentials")
 # binding of `phase_table` in phase/tabulated.glsl
 PHASE_TABLE = 3
 
@@ -35,26 +38,40 @@ def add_scattering(
     shadow_map: ShadowMap,
     pictures: PictureTextures,
     *,
+    polygons: Any = None,
+    layer: int = 0,
+    counts: Any = None,
     first: bool,
 ) -> None:
-    """Write the first light's airlight to `target`, every N-th pixel of the image, or add another's."""
+    """Write the first light's airlight to `target`, every N-th pixel of the image, or add another's.
+
+    Parameters
+    ----------
+    polygons : what `render_shadow_polygons` drew, for a visibility that asks for it; this light's are in `layer`
+    counts : RGBA32F    of the target's size, a channel for each of `COUNTERS`; None where nothing is counted
+    """
     grey = np.ptp(np.broadcast_to(scene.medium.sigma_t, 3)) == 0
     model = AIRLIGHT_MODELS[technique.airlight]
     program = device.program(
         "scattering.frag.glsl",
-        defines=light_defines(scene, light) | {"GREY": int(grey), "TILES": tile_count(light), "STEPS": technique.steps},
+        defines=light_defines(scene, light)
+        | shadow_map.defines
+        | {"GREY": int(grey), "STEPS": technique.steps}
+        | ({"COUNTING": 1} if counts else {}),
         includes={
             "<airlight>": model.source,
             "<visibility>": VISIBILITIES[technique.visibility].source,
             "<phase>": f"phase/{scene.phase.name}.glsl",
         },
-        generated=model.generated,
+        generated=model.generated(scene.phase),
     )
     set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, pictures))
     set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))
     set_uniforms(program, {"downsample": technique.downsample})
+    if polygons:
+        set_uniforms(program, bind_polygons(polygons, layer, scene.camera, technique.downsample))
     with phase_uniforms(device, program, scene.phase):
-        device.fill(program, target, add=not first)
+        device.fill(program, *filter(None, (target, counts)), add=not first)
 
 
 @contextmanager

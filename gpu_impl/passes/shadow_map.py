@@ -18,6 +18,8 @@ WIDEST_FLAT_MAP = np.radians(60)
 # no depth buffer is used and DEPTH_CLAMP keeps what lies outside, so that only their ratio has to be harmless
 NEAR, FAR = 1.0, 2.0
 DEPTH_CLAMP = 0x864F
+# binding of a map that stands in a buffer; those from 3 on are others'
+SHADOW_BUFFER = 2
 # (forward, up) of a cube's faces +x -x +y -y +z -z, in the order of tile_position() in shadow_lookup.glsl
 CUBE_FACES = (
     ((1, 0, 0), (0, 1, 0)),
@@ -40,20 +42,35 @@ class ShadowMap:
 
     Attributes
     ----------
-    texture : moderngl.Texture     R32F, (tiles * size, size): distance to the light [scene unit]
+    texture : moderngl.Texture     R32F, (tiles * size, size): distance to the light [scene unit]; None in a buffer
     matrices : (tiles, 4, 4)       world to clip space of each tile
     size : int                     texels on a side of a tile
     texel_slope : float            width of a texel at distance 1, or anywhere in parallel light
+    buffer : moderngl.Buffer       the texture's rows one after another, where it does not hold them itself
     """
 
     texture: Any
     matrices: np.ndarray
     size: int
     texel_slope: float
+    buffer: Any = None
+
+    @property
+    def defines(self) -> dict[str, int]:
+        """Defines of shadow_lookup.glsl."""
+        return {"TILES": len(self.matrices)} | ({"SHADOW_BUFFER": SHADOW_BUFFER} if self.buffer else {})
+
+    @property
+    def memory(self) -> Any:
+        """The texture or the buffer, whichever holds the map."""
+        return self.buffer or self.texture
 
     def bind(self, unit: int) -> dict[str, Any]:
-        """Bind the texture and give the uniforms of shadow_lookup.glsl."""
-        self.texture.use(unit)
+        """Bind the texture or the buffer and give the uniforms of shadow_lookup.glsl."""
+        if self.buffer:
+            self.buffer.bind_to_storage_buffer(SHADOW_BUFFER)
+        else:
+            self.texture.use(unit)
         return {
             "shadow_map": unit,
             "tile_matrix": self.matrices[0],
@@ -85,10 +102,11 @@ def render_shadow_map(device: Device, geometry: Geometry, light: Light, size: in
     context.enable_direct(DEPTH_CLAMP)
     context.enable(context.BLEND)
     context.blend_equation = context.MIN
+    eye = None if light.kind == "directional" else light.position
     for tile, matrix in enumerate(matrices):
         target.viewport = (tile * size, 0, size, size)
         for mesh in geometry.meshes:
-            mesh.draw(program, {"world_to_clip": matrix, **source})
+            mesh.draw(program, {"world_to_clip": matrix, **source}, eye)
     context.disable_direct(DEPTH_CLAMP)
     context.blend_equation = context.FUNC_ADD
     context.disable(context.BLEND)

@@ -8,8 +8,9 @@ from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import Device
 from gpu_impl.light_uniforms import light_defines, light_uniforms
 from gpu_impl.passes.geometry import GBuffer
-from gpu_impl.passes.shadow_map import ShadowMap, tile_count
+from gpu_impl.passes.shadow_map import ShadowMap
 from gpu_impl.shader_source import set_uniforms
+from gpu_impl.techniques import Technique
 from gpu_impl.textures import PictureTextures
 from scenes.model import Light, Scene
 
@@ -17,28 +18,29 @@ from scenes.model import Light, Scene
 def add_surface(
     device: Device,
     target: Any,
+    technique: Technique,
     scene: Scene,
     light: Light,
     gbuffer: GBuffer,
     shadow_map: ShadowMap,
     pictures: PictureTextures,
     *,
-    composition: str,
     first: bool,
 ) -> None:
     """Write the direct light of the first light on diffuse and Phong surfaces to `target`, or add another's.
 
     Parameters
     ----------
-    target : RGBA32F       light as it leaves the surfaces
-    composition : str      one of `gpu_impl.techniques.COMPOSITIONS`
+    target : RGBA32F    light as it leaves the surfaces
     """
     program = device.program(
         "surface.frag.glsl",
         defines={
             **light_defines(scene, light),
-            "TILES": tile_count(light),
-            "LIGHT_LEG": int(composition == "physical"),
+            **gbuffer.defines,
+            **shadow_map.defines,
+            "LIGHT_LEG": int(technique.composition == "physical"),
+            "SOFT_SHADOWS": int(technique.surface_shadows == "soft"),
         },
     )
     set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, pictures))

@@ -17,7 +17,7 @@ void main() {
     float d = texelFetch(normal_and_distance, pixel, 0).w;
     Ray ray = camera_ray(pixel);
     vec2 leg = fog_interval(ray.o, ray.d, vec2(0.0, d));
-    vec4 reflected = texelFetch(surface, pixel, 0) * vec4(exp(-sigma_t * (leg.y - leg.x)), 1.0);
+    vec4 reflected = texelFetch(surface, pixel, 0) * vec4(transmittance(leg.y - leg.x), 1.0);
 #if SPLIT == 1
     attenuated_surface = reflected;
     airlight_and_pieces = airlight;

@@ -1,6 +1,7 @@
 // The contract between the three parts of a technique. A technique is
 //     visibility strategy  x  airlight model  x  lattice
 // and each part knows the others only through what stands here.
+#include "counting.glsl"
 
 // Begins on the near plane, as Mitsuba's rays do, or where it enters a bounded medium; t_max is the distance to the
 // surface, to the far plane or to where it leaves the medium. All of it lies in fog.

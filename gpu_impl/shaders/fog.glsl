@@ -29,6 +29,11 @@ vec2 fog_interval(vec3 o, vec3 d, vec2 line) {
     return line.x < line.y ? line : vec2(0.0);
 }
 
+// What a length of fog leaves of the light.
+vec3 transmittance(float length_in_fog) {
+    return GREY == 1 ? vec3(exp(-sigma_t.x * length_in_fog)) : exp(-sigma_t * length_in_fog);
+}
+
 // How much of the way from a point to the light is fog.
 float light_leg(Light light, vec3 point) {
     vec3 to_light = light.directional ? -light.direction : light.position - point;

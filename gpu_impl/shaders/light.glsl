@@ -15,9 +15,19 @@ Passage passage(Ray ray, Light light) {
 }
 
 // Mitsuba's spot: linear in the angle between the beam's edge and the cutoff. 1 for any other light.
+// SPOT: 0 no spot, 1 a hard one, whose angle need not be known, 2 a soft one.
+uniform float tan_cutoff;   // of the cutoff angle: a shader would compute it anew for each pixel
 float falloff(Light light, vec3 point) {
-    if (light.cutoff_angle > 1.5707) return 1.0;
+#if SPOT == 0
+    return 1.0;
+#endif
     vec3 from_light = point - light.position;
+#if SPOT == 1
+    // by the tangent, accurate near the axis too
+    float along = dot(light.direction, from_light);
+    vec3 aside = cross(light.direction, from_light);
+    return along > 0.0 && dot(aside, aside) < tan_cutoff * tan_cutoff * along * along ? 1.0 : 0.0;
+#endif
     // atan, not acos: accurate near the axis too
     float angle = atan(length(cross(light.direction, from_light)), dot(light.direction, from_light));
     if (angle <= light.beam_width) return 1.0;
@@ -38,7 +48,7 @@ vec3 angular(Light light, vec3 point) {
     vec3 local = (world_to_light * vec4(point, 1.0)).xyz;
     // the picture fills the square around the cone
     if (share.x > 0.0)
-        share *= look_up(spot_texture, spot_bitmap, 0.5 + 0.5 * local.xy / (local.z * tan(light.cutoff_angle)));
+        share *= look_up(spot_texture, spot_bitmap, 0.5 + 0.5 * local.xy / (local.z * tan_cutoff));
 #endif
     return share;
 }
@@ -47,7 +57,9 @@ vec3 angular(Light light, vec3 point) {
 // light.
 vec2 cone_interval(Ray ray, Light light) {
     vec2 whole = vec2(0.0, ray.t_max);
-    if (light.cutoff_angle > 1.5707) return whole;
+#if SPOT == 0
+    return whole;
+#endif
     // Counted from the light's projection, s = t - t_h, where q is orthogonal to d: inside the double cone where
     // |(q + s d) x axis|^2 <= sin^2 |q + s d|^2. With the sine a narrow cone keeps its digits.
     vec3 to_light = light.position - ray.o;

@@ -1,15 +1,12 @@
 // The driver: evaluates one technique for one light on every N-th pixel. Its result is added to that of other lights.
 // rgb: airlight L_m, the radiance that fog scatters to the eye; a: lit intervals that the strategy reported.
-#include "camera_ray.glsl"
+#include "ray_in_fog.glsl"
 #include "light.glsl"
-#include "fog.glsl"
 #include "<airlight>"
 #include "<visibility>"
 
 uniform Light light;
-uniform sampler2D normal_and_distance;   // distance 0: no surface, the ray ends on the far plane
-uniform int downsample;
-out vec4 result;
+layout(location = 0) out vec4 result;
 
 Ray the_ray;
 vec2 the_cone;
@@ -22,26 +19,17 @@ void lit(float t0, float dt, float w) {
         if (begin > t0 || end < t0 + dt) dt = end - begin;
         t0 = begin;
     }
+    COUNT_PIECE;
     result.rgb += w * airlight(the_ray, light, t0, dt);
 }
 
 void main() {
-    ivec2 pixel = min(ivec2(gl_FragCoord.xy) * downsample + downsample / 2, image_size - 1);
-    the_ray = camera_ray(pixel);
-    float surface = texelFetch(normal_and_distance, pixel, 0).w;
-    if (surface > 0.0) the_ray.t_max = surface;
-    // a ray begins in the fog and ends in it; what is before does not weaken it
-    vec2 fog = fog_interval(the_ray.o, the_ray.d, vec2(0.0, the_ray.t_max));
-    the_ray.o += fog.x * the_ray.d;
-    the_ray.t_max = fog.y - fog.x;
+    float start;
+    the_ray = ray_in_fog(pixel_of(ivec2(gl_FragCoord.xy)), light, start);
     result = vec4(0.0);
+    START_COUNTING;
     if (the_ray.t_max <= 0.0) return;
-#if WHOLE_LEG == 1
-    // Past the light both legs grow: 16 mean free paths behind its projection float32 has nothing left to add.
-    float thinnest = min(sigma_t.x, min(sigma_t.y, sigma_t.z));
-    float t_h = dot(light.position - the_ray.o, the_ray.d);
-    the_ray.t_max = min(the_ray.t_max, max(t_h, 0.0) + 16.0 / max(thinnest, 1e-30));
-#endif
-    the_cone = cone_interval(the_ray, light);
+    // without the ray's end: pieces end there by themselves, but for those that are taken away behind it (printed.glsl)
+    the_cone = cone_interval(Ray(the_ray.o, the_ray.d, 3e38), light);
     visibility(the_ray, light);
 }

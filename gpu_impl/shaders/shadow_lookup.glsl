@@ -2,7 +2,11 @@
 // parallel light have one tile; any other light has the six faces of a cube side by side.
 #include "contract.glsl"
 
+#ifdef SHADOW_BUFFER
+layout(std430, binding = SHADOW_BUFFER) readonly buffer ShadowTexels { float shadow_texels[]; };
+#else
 uniform sampler2D shadow_map;
+#endif
 uniform int tile_size;      // texels on a side
 uniform float texel_slope;  // width of a texel at distance 1, or anywhere in parallel light
 uniform mat4 tile_matrix;   // world to clip space of the one tile
@@ -34,7 +38,13 @@ ivec2 texel_of(vec3 position) {
 }
 
 float stored_distance(ivec2 texel, vec3 position) {
-    return texelFetch(shadow_map, texel + ivec2(int(position.z) * tile_size, 0), 0).r;
+    COUNT_READ;
+    texel.x += int(position.z) * tile_size;
+#ifdef SHADOW_BUFFER
+    return shadow_texels[texel.y * TILES * tile_size + texel.x];
+#else
+    return texelFetch(shadow_map, texel, 0).r;
+#endif
 }
 
 // Distance to the nearest surface in the direction of `point`; without end outside a flat map: there a spot sheds no

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import MISSING, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +21,15 @@ from scenes.mitsuba_setup import mitsuba
 from scenes.model import Scene
 
 # none of them a technique's own, so that what is not kept shows
-SETTINGS = {"steps": 37, "shadow_map": 96, "downsample": 2}
+SETTINGS: dict[str, Any] = {
+    "steps": 37,
+    "shadow_map": 96,
+    "downsample": 2,
+    "upsample": "nearest_depth",
+    "surface_shadows": "soft",
+    "shadow_storage": "buffer",
+    "composition": "printed",
+}
 MESHES = """<default name='mesh' value='wall.obj'/>
   <shape type='obj'><string name='filename' value='$mesh'/></shape>"""
 

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from analytic.phase import PHASES
+from analytic.phase import PHASES, Phase, phase
 from gpu_impl import shader_source
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.context import shared_context
 from gpu_impl.device import Device
-from gpu_impl.shader_source import SHADERS, ShaderError, ShaderSource, compile_program
+from gpu_impl.shader_source import SHADERS, ShaderError, ShaderSource, compile_compute, compile_program
 from gpu_impl.visibilities import VISIBILITIES
 
 FILES = sorted(path.relative_to(SHADERS).as_posix() for path in SHADERS.rglob("*.glsl"))
-INCLUDES = [name for name in FILES if not name.endswith((".vert.glsl", ".frag.glsl"))]
+INCLUDES = [name for name in FILES if not name.endswith((".vert.glsl", ".frag.glsl", ".comp.glsl"))]
 FULLSCREEN = ShaderSource("fullscreen.vert.glsl")
 # vertex and fragment shader of each pass; the scattering pass has the combinations below to itself
 PASSES = [
@@ -23,13 +23,20 @@ PASSES = [
     ("shadow_map.vert.glsl", "shadow_map.frag.glsl"),
     ("fullscreen.vert.glsl", "surface.frag.glsl"),
     ("fullscreen.vert.glsl", "combination.frag.glsl"),
+    ("upsampling/edges.vert.glsl", "combination.frag.glsl"),
+    ("fullscreen.vert.glsl", "upsampling/cells.frag.glsl"),
+    ("fullscreen.vert.glsl", "tone_mapping.frag.glsl"),
+    ("fullscreen.vert.glsl", "shadow_volume/limits.frag.glsl"),
+    ("shadow_volume/polygon.vert.glsl", "shadow_volume/polygon.frag.glsl"),
 ]
+COMPUTE = "shadow_volume/silhouette.comp.glsl"
 RAY_AND_LIGHT = "Ray(vec3(0), vec3(0, 0, 1), 1.0), Light(vec3(1), vec3(0, 0, 1), vec3(1), 3.14, 3.14, false)"
+LIT = "void lit(float t0, float dt, float w) { result += vec4(t0, dt, w, 1.0); }\n"
 # what the contract leaves to the other parts, and a call, so that the linker keeps what is tested
 STUBS = {
     "airlight": f"void main() {{ result = vec4(airlight({RAY_AND_LIGHT}, 0.0, 1.0), 0.0); }}",
-    "visibility": "void lit(float t0, float dt, float w) { result += vec4(t0, dt, w, 1.0); }\n"
-    f"void main() {{ result = vec4(0.0); visibility({RAY_AND_LIGHT}); }}",
+    "visibility": f"{LIT}void main() {{ result = vec4(0.0); visibility({RAY_AND_LIGHT}); }}",
+    "visibility/parts": f"{LIT}void main() {{ result = vec4(0.0); }}",
     "phase": "void main() { result = vec4(phase(vec2(0.25, 0.75)), phase_scale(), 0.0, 0.0); }",
     "upsampling": "void main() { result = upsampled(ivec2(0)); }",
     "": "void main() { result = vec4(1.0); }",
@@ -39,6 +46,7 @@ STUBS = {
 # what a pass defines for a cube map, coloured fog that fills space and a light without a picture
 PLAIN = {
     "LIGHT_LEG": 1,
+    "SOFT_SHADOWS": 0,
     "DOWNSAMPLED": 1,
     "SPLIT": 1,
     "TILES": 6,
@@ -47,19 +55,35 @@ PLAIN = {
     "WHOLE_LEG": 1,
     "FOG_PLANES": 0,
     "FOG_BALL": 0,
+    "SPOT": 0,
     "SPOT_TEXTURE": 0,
+    "SPECULAR": 0,
+    "PICTURE": 0,
+    "CULL": 0,
 }
 VARIANTS = [
     PLAIN,
-    PLAIN | {"TILES": 1, "GREY": 1, "SPOT_TEXTURE": 1},
-    PLAIN | {"FOG_PLANES": 6, "WHOLE_LEG": 0},
-    PLAIN | {"TILES": 1, "FOG_BALL": 1, "WHOLE_LEG": 0},
+    PLAIN | {"TILES": 1, "SOFT_SHADOWS": 1, "GREY": 1, "SPOT": 2, "SPOT_TEXTURE": 1, "PICTURE": 1, "CULL": 1},
+    PLAIN | {"SOFT_SHADOWS": 1, "SHADOW_BUFFER": 2, "FOG_PLANES": 6, "WHOLE_LEG": 0},
+    PLAIN | {"TILES": 1, "SPOT": 1, "FOG_BALL": 1, "WHOLE_LEG": 0, "SPECULAR": 1},
     PLAIN | {"GREY": 1, "FOG_PLANES": 64, "SPOT_TEXTURE": 1, "WHOLE_LEG": 0},
 ]
 
 
+EXAMPLES = [
+    phase("isotropic"),
+    phase("rayleigh"),
+    phase("hg", g=0.6),
+    phase("schlick", k=0.6),
+    phase("cornette_shanks", g=0.6),
+    phase("tabulated", values=(1.0, 2.0, 4.0)),
+]
+
+
 def assembled(main: str, **settings) -> ShaderSource:
-    generated = {"<main>": main, **AIRLIGHT_MODELS["quadrature"].generated, **settings.pop("generated", {})}
+    # what any of the models has computed for it: some share a name, none needs more than there is for it
+    computed = {name: text for model in AIRLIGHT_MODELS.values() for name, text in model.generated(EXAMPLES[0]).items()}
+    generated = {"<main>": main, **computed, **settings.pop("generated", {})}
     includes = {"<phase>": "phase/isotropic.glsl"}
     return ShaderSource("<main>", settings.pop("defines", PLAIN), includes, generated)
 
@@ -72,7 +96,9 @@ def compiled(source: ShaderSource) -> None:
 def test_an_include_compiles_on_its_own(name: str) -> None:
     folder = Path(name).parent.as_posix().removeprefix(".")
     # parts of a model are not models
-    if name in ("airlight/exponential_integral.glsl", "airlight/part_of_the_leg.glsl", "upsampling/lattice.glsl"):
+    if folder.startswith("airlight") and name not in {model.source for model in AIRLIGHT_MODELS.values()}:
+        folder = ""
+    if folder not in STUBS:
         folder = ""
     # a part of the quadrature asks for what comes before it there
     before = '#include "<phase>"\n#include "<gauss-legendre>"\n' if name == "airlight/part_of_the_leg.glsl" else ""
@@ -88,34 +114,65 @@ def test_a_pass_compiles(vertex: str, fragment: str, defines: dict[str, int]) ->
     compile_program(shared_context(), ShaderSource(vertex), source).release()
 
 
+@pytest.mark.parametrize("defines", VARIANTS, ids=str)
+def test_a_compute_pass_compiles(defines: dict[str, int]) -> None:
+    compile_compute(shared_context(), ShaderSource(COMPUTE, defines)).release()
+
+
+def test_a_mistake_in_a_compute_shader_is_reported_with_its_place() -> None:
+    source = ShaderSource("<main>", generated={"<main>": "void main() {\n    no_such_name = 1.0;\n}"})
+    with pytest.raises(ShaderError, match=r"<main>:2\b"):
+        compile_compute(shared_context(), source)
+
+
 def test_every_file_is_covered() -> None:
-    mains = {name for pair in PASSES for name in pair} | {"scattering.frag.glsl"}
+    mains = {name for pair in PASSES for name in pair} | {"scattering.frag.glsl", COMPUTE}
     assert mains | set(INCLUDES) == set(FILES)
     registered = {model.source for model in AIRLIGHT_MODELS.values()} | {v.source for v in VISIBILITIES.values()}
     assert registered <= set(INCLUDES)
     assert {f"phase/{name}.glsl" for name in PHASES} <= set(INCLUDES)
+    assert {function.name for function in EXAMPLES} == set(PHASES)
 
 
-@pytest.mark.parametrize("visibility", VISIBILITIES)
-@pytest.mark.parametrize("airlight", AIRLIGHT_MODELS)
-@pytest.mark.parametrize("phase", PHASES)
-def test_every_combination_compiles(visibility: str, airlight: str, phase: str) -> None:
-    device = Device(shared_context())
-    for defines in VARIANTS:
+TAKEN = [
+    pytest.param(name, function, id=f"{name} {function.name}")
+    for name, model in AIRLIGHT_MODELS.items()
+    for function in EXAMPLES
+    if model.phases is None or function.name in model.phases
+]
+
+
+def compiled_cell(visibility: str, airlight: str, function: Phase, variants: list[dict[str, int]]) -> None:
+    model, device = AIRLIGHT_MODELS[airlight], Device(shared_context())
+    for defines in variants:
         program = device.program(
             "scattering.frag.glsl",
             defines=defines,
             includes={
-                "<airlight>": AIRLIGHT_MODELS[airlight].source,
+                "<airlight>": model.source,
                 "<visibility>": VISIBILITIES[visibility].source,
-                "<phase>": f"phase/{phase}.glsl",
+                "<phase>": f"phase/{function.name}.glsl",
             },
-            generated=AIRLIGHT_MODELS[airlight].generated,
+            generated=model.generated(function),
         )
         # the driver asked the strategy, and the strategy the model
         assert "sigma_s" in program
-        assert "shadow_map" in program
+        assert ("shadow_map" in program) == ("SHADOW_BUFFER" not in defines)
     device.release()
+
+
+@pytest.mark.parametrize(("airlight", "function"), TAKEN)
+def test_every_model_compiles_with_its_phase_functions(airlight: str, function: Phase) -> None:
+    # a model for lights in the fog meets no other
+    variants = VARIANTS if AIRLIGHT_MODELS[airlight].any_light else [v for v in VARIANTS if v["WHOLE_LEG"] == 1]
+    compiled_cell("lit_intervals", airlight, function, variants)
+
+
+@pytest.mark.parametrize("visibility", VISIBILITIES)
+@pytest.mark.parametrize("airlight", AIRLIGHT_MODELS)
+def test_every_visibility_compiles_with_every_model(visibility: str, airlight: str) -> None:
+    # neither knows the other, so that names are all they can quarrel about: one model sees all variants, the others one
+    compiled_cell(visibility, airlight, EXAMPLES[0], VARIANTS if airlight == "riemann" else VARIANTS[1:2])
 
 
 @pytest.mark.parametrize("include", INCLUDES)
@@ -123,7 +180,7 @@ def test_a_mistake_in_an_include_is_reported_with_its_file_and_line(
     include: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name in FILES:
-        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
         (tmp_path / name).write_text((SHADERS / name).read_text(encoding="utf-8"), encoding="utf-8")
     lines = (SHADERS / include).read_text(encoding="utf-8").splitlines()
     # at the end, so behind whatever the file includes itself

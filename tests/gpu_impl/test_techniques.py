@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.techniques import find_technique
 from scenes.errors import InputError
 
@@ -20,3 +21,33 @@ def test_what_is_no_whole_number_is_refused(setting: str, value: object) -> None
 @pytest.mark.parametrize("value", [4, np.int64(4), np.uint8(4)])
 def test_whole_numbers_are_taken(value: int) -> None:
     assert find_technique("Nishita1987", steps=value, shadow_map=value, downsample=value).steps == 4
+
+
+def test_another_part_is_another_cell() -> None:
+    base = find_technique("Weng2010", steps=32)
+    cell = find_technique("Weng2010", steps=32, airlight="riemann", visibility="uniform_march")
+    assert (cell.name, cell.visibility, cell.airlight, cell.steps) == (
+        "uniform_march+riemann",
+        "uniform_march",
+        "riemann",
+        32,
+    )
+    # named as what it is already
+    assert find_technique("Weng2010", steps=32, visibility=base.visibility, airlight=base.airlight) == base
+    assert find_technique("Nishita1987", visibility="lit_intervals").name == "lit_intervals+riemann"
+
+
+def test_every_model_of_the_thesis_is_a_variant_by_name() -> None:
+    for model in AIRLIGHT_MODELS:
+        if model.startswith("weng2010:"):
+            technique = find_technique(model.replace("weng2010", "Weng2010"))
+            assert technique.airlight == model
+            assert technique.visibility == ("lit_intervals:printed" if model.endswith(":printed") else "lit_intervals")
+
+
+@pytest.mark.parametrize("setting", ["visibility", "airlight", "upsample", "surface_shadows", "composition"])
+@pytest.mark.parametrize("value", ["no such", "", 3, None.__class__, ["bilateral"]])
+def test_what_is_none_of_the_choices_is_refused(setting: str, value: object) -> None:
+    with pytest.raises(InputError, match=r"There is no .*; use one of ") as caught:
+        find_technique("Weng2010", **{setting: value})
+    assert "\n" not in str(caught.value)

@@ -22,8 +22,9 @@ def write_scene(
     eye: str = "0, 0, 5",
     far: float = 25,
     near: float = 0.01,
+    inside: bool = True,
 ) -> Scene:
-    """Load a scene of `emitters` and `shapes` in fog, seen from `eye` towards the origin."""
+    """Load a scene of `emitters` and `shapes` in fog, seen from `eye`, which is `inside` it, towards the origin."""
     path = folder / "scene.xml"
     path.write_text(
         f"""<scene version='3.0.0'>
@@ -31,7 +32,7 @@ def write_scene(
           <sensor type='perspective'>
             <float name='fov' value='45'/><float name='far_clip' value='{far}'/><float name='near_clip' value='{near}'/>
             <transform name='to_world'><lookat origin='{eye}' target='0, 0, 0' up='0, 1, 0'/></transform>
-            <film type='hdrfilm'/><ref id='fog'/>
+            <film type='hdrfilm'/>{"<ref id='fog'/>" * inside}
           </sensor>
           {emitters}{shapes}
         </scene>""",

@@ -34,7 +34,7 @@ vec3 channel(Ray ray, Light light, float t0, float dt, float extinction) {
         float v = v_a + beyond, cos2 = 1.0 / (1.0 + v * v);
         float term = phase(vec2(cos2, v * v * cos2)) * exp(-H * beyond) * X * X * X * cos2;
         // a hard spot is cut at its cone, and is even inside it
-        bool even = light.beam_width >= light.cutoff_angle && SPOT_TEXTURE == 0;
+        bool even = SPOT != 2 && SPOT_TEXTURE == 0;
         vec3 share = even ? vec3(1.0) : angular(light, ray.o + ray.d * (p.t_h + 0.5 * p.h * (v - 1.0 / v)));
         sum += RULE_WEIGHT[i] * term * share;
     }

@@ -6,28 +6,15 @@
 //     L = I k_s / (2 pi h) [ e^{-k_t (t0 + d_a)} G(H, v_a) - e^{-k_t (t0 + dt + d_b)} G(H, v_b) ].
 // The v_h terms of Fig. 4.11 cancel identically here: two evaluations of Ei serve where the thesis counts three.
 // The difference of two antiderivatives loses digits where the piece is short: that is the form's own error.
-#include "light.glsl"
+#include "airlight/parts/closed_form.glsl"
 #include "airlight/exponential_integral.glsl"
 
-const bool CLIP_TO_CONE = true;
-
-float antiderivative(float H, float u, float r) {
-    float v = u < 0.0 ? 1.0 / (r - u) : r + u;
-    return -scaled_e1(max(H, 1e-7) * vec2(v, 1.0)).y;
-}
-
-vec3 channel(Ray ray, Light light, float t0, float dt, float extinction) {
-    Passage p = passage(ray, light);
+float closed_form(Passage p, float t0, float dt, float extinction) {
     float H = extinction * p.h;
-    float u_a = (t0 - p.t_h) / p.h, u_b = u_a + dt / p.h;
-    float r_a = sqrt(1.0 + u_a * u_a), r_b = sqrt(1.0 + u_b * u_b);
-    float at_a = exp(-extinction * (t0 + p.h * r_a)) * antiderivative(H, u_a, r_a);
-    float at_b = exp(-extinction * (t0 + dt + p.h * r_b)) * antiderivative(H, u_b, r_b);
-    return vec3(0.159154943091895 / p.h * (at_a - at_b));
+    vec2 u = both_u(p, t0, dt), v = both_v(u), d = p.h * sqrt(1.0 + u * u);
+    float at_a = exp(-extinction * (t0 + d.x)) * scaled_e1(H * vec2(v.x, 1.0)).y;
+    float at_b = exp(-extinction * (t0 + dt + d.y)) * scaled_e1(H * vec2(v.y, 1.0)).y;
+    return 0.159154943 / p.h * (at_b - at_a);
 }
 
-vec3 airlight(Ray ray, Light light, float t0, float dt) {
-    // the closed form takes the intensity as constant over the piece: exact for a hard cone
-    vec3 share = angular(light, ray.o + (t0 + 0.5 * dt) * ray.d);
-    return light.intensity * share * sigma_s * PER_CHANNEL(channel, ray, light, t0, dt);
-}
+CLOSED_FORM_MODEL(closed_form)

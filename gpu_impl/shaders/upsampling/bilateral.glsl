@@ -1,23 +1,19 @@
-// Joint bilateral upsampling (Weng 2010, section 1.2: "Bilateral filter"): the four nearest evaluated pixels, weighted
-// by their closeness in the image and by how well their surface distance and normal agree with this pixel's.
-#include "upsampling/lattice.glsl"
+// Joint bilateral upsampling (Kopf et al. 2007; Weng 2010, section 1.2: "Bilateral filter"), guided by depth and normal:
+// the four nearest evaluated pixels, bilinear where they see one surface (cells.frag.glsl: a plane by its normal, or one
+// depth), and elsewhere weighted by how well their distance agrees with this pixel's too.
+#include "upsampling/parts/guides.glsl"
 
-const float DISTANCE_SIGMA = 0.05;   // relative difference of distance at which a neighbour counts 1/e
+const float DISTANCE_SIGMA = 0.02;   // relative difference of distance at which a neighbour counts a quarter
+const float LEAST_NEAR = 1e-4;       // of a neighbour's weight, for pixels on a line of the lattice whose two do not fit
 
 vec4 upsampled(ivec2 pixel) {
-    vec4 here = seen(pixel);
-    Corners corners = corners_of(pixel);
+    Place place = place_of(pixel);
+    vec4 there = corner_distances(place.cell);
+    if (agree(there)) return interpolated(place.cell, place.fraction);
+    vec2 x = vec2(1.0 - place.fraction.x, place.fraction.x), y = vec2(1.0 - place.fraction.y, place.fraction.y);
+    vec4 apart = distances_apart(there, distance_seen(pixel)) / DISTANCE_SIGMA, fit = 1.0 + apart * apart;
+    vec4 weight = (vec4(x * y.x, x * y.y) + LEAST_NEAR) / (fit * fit);
     vec4 sum = vec4(0.0);
-    float total = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        vec4 there = seen(evaluated_pixel(corners.at[i]));
-        float apart = abs(there.w - here.w) / (DISTANCE_SIGMA * min(there.w, here.w));
-        // a background has no normal: there the distance alone decides
-        float agree = dot(here.xyz, here.xyz) * dot(there.xyz, there.xyz) > 0.0 ? max(dot(there.xyz, here.xyz), 0.0) : 1.0;
-        // never quite zero: where no neighbour fits, the nearest still fill the pixel
-        float weight = (corners.near[i] + 1e-4) * (exp(-apart) * agree + 1e-6);
-        sum += weight * texelFetch(scattering, corners.at[i], 0);
-        total += weight;
-    }
-    return sum / total;
+    for (int i = 0; i < 4; ++i) sum += weight[i] * texelFetch(scattering, corner_of(place.cell, i), 0);
+    return sum / dot(weight, vec4(1.0));
 }

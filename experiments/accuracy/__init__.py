@@ -1,0 +1,1 @@
+"""`airlight accuracy`: how near the repaired thesis comes to the truth, and what brings it nearer."""

@@ -1,0 +1,1 @@
+"""`airlight benchmark techniques`: what the techniques cost, beside a brute-force march in the same rounds."""

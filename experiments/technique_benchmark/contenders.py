@@ -1,0 +1,81 @@
+"""Who runs, who is compared with whom, and what the thesis says it reached."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from gpu_impl.techniques import Technique, find_technique
+
+STEPS = 64
+# as the published technique is drawn, all pixels evaluated
+FULL = {"steps": STEPS, "shadow_map": 1024, "downsample": 1}
+FAST = {"steps": STEPS, "shadow_map": 512, "downsample": 4}
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A technique with its settings, under the name that tables call it by."""
+
+    name: str
+    technique: str
+    settings: dict[str, Any] = field(default_factory=lambda: FULL)
+
+    def find(self) -> Technique:
+        """Look the technique up; InputError where there is none of that name."""
+        return find_technique(self.technique, **self.settings)
+
+
+BASELINE = Contender("march", "Nishita1987")
+CONTENDERS = (
+    BASELINE,
+    Contender("fast", "Weng2010", FAST),
+    Contender("fast, one Ei", "lit_intervals+one_ei", FAST),
+    Contender("fast, quadrature", "lit_intervals+quadrature", FAST),
+    Contender("merged", "Weng2010", FULL),
+    Contender("four Ei", "Weng2010:four-ei"),
+    Contender("three Ei", "Weng2010:three-ei"),
+    Contender("two Ei", "Weng2010:two-ei"),
+    Contender("Taylor", "Weng2010:taylor"),
+    Contender("minimax", "Weng2010:minimax"),
+    Contender("as printed", "Weng2010:printed"),
+    Contender("one Ei", "lit_intervals+one_ei"),
+    Contender("quadrature", "lit_intervals+quadrature"),
+    Contender("whole ray, as many samples", "lit_intervals:unbounded+quadrature"),
+    # it takes as many samples as give the spacing of "quadrature", scene by scene: see measurement.py
+    Contender("whole ray, as dense", "lit_intervals:unbounded+quadrature"),
+    Contender("map in a buffer", "lit_intervals+quadrature", FULL | {"shadow_storage": "buffer"}),
+)
+FAST_ROWS = tuple(one.name for one in CONTENDERS if one.settings is FAST)
+AS_DENSE, BOUNDED = "whole ray, as dense", "quadrature"
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two contenders that differ in one thing, and what the thesis says of it."""
+
+    first: str
+    second: str
+    claim: str
+
+
+PAIRS = (
+    Pair("four Ei", "three Ei", "section 4.4: three evaluations of Ei for four"),
+    Pair("three Ei", "two Ei", "section 4.4: two for three where the phase function is isotropic"),
+    Pair("two Ei", "merged", "ours: the exponents merged into Ei"),
+    Pair("whole ray, as many samples", "quadrature", "Algorithm 4.2: samples in the shadow region only, as many"),
+    Pair("whole ray, as dense", "quadrature", "Algorithm 4.2: samples in the shadow region only, as dense"),
+    Pair("quadrature", "map in a buffer", "chapter 4: the shadow map in a buffer rather than a texture"),
+)
+
+# Weng 2010, Table 5.1: frames a second, anisotropic and isotropic, at 1024 x 1024 on a GeForce 9800 GT
+TABLE_5_1 = {"donut_dragon": (6, 23), "dragon": (12, 24), "yeahright": (6, 17), "many_objects": (8, 18)}
+SCENES = [*TABLE_5_1, "wire_mesh"]
+# what a fast row's error may be: of the median pixel with airlight, and at the 95th percentile
+ERROR_LIMITS = (0.05, 0.20)
+
+
+def published_rate(scene: str, phase: str) -> int | None:
+    """Frames a second that Table 5.1 has for a scene; None where it has none."""
+    anisotropic, isotropic = TABLE_5_1.get(scene, (None, None))
+    return isotropic if phase == "isotropic" else anisotropic

@@ -1,0 +1,122 @@
+"""The numbers of the benchmark, flat for CSV files, and what is said of them."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from experiments.benchmark.efficiency import quartiles
+from experiments.provenance import TECHNIQUE_KEYS, describe_scene
+from experiments.technique_benchmark.budget import triangle_count
+from experiments.technique_benchmark.contenders import ERROR_LIMITS, FAST_ROWS, PAIRS, published_rate
+from experiments.technique_benchmark.intervals import Array, median_interval
+from experiments.technique_benchmark.measurement import Measured, Result
+from gpu_impl.device import shared_device
+from gpu_impl.timing import PASSES
+
+Row = dict[str, Any]
+
+
+def rows(result: Result) -> list[Row]:
+    """A row a contender, refused ones included."""
+    info = shared_device().info
+    about = {
+        **describe_scene(result.scene),
+        "phase": result.scene.phase.name,
+        "triangles": triangle_count(result.scene),
+        "reference_error": result.reference.estimate.rel_error,
+        "gl_renderer": info.renderer,
+        "gl_version": info.version,
+        "clock": result.clock,
+    }
+    return [{**about, "contender": name, **_numbers(result, one)} for name, one in result.contenders.items()]
+
+
+def _numbers(result: Result, one: Measured) -> Row:
+    settings = {TECHNIQUE_KEYS.get(key, key): value for key, value in asdict(one.technique).items()}
+    if one.refusal or not one.metrics or not one.footprint:
+        return {**settings, "refusal": one.refusal}
+    low, middle, high = quartiles(one.milliseconds)
+    ratios = result.ratios(one.contender.name)
+    least, most = median_interval(ratios)
+    return {
+        **settings,
+        "refusal": "",
+        "rounds": one.milliseconds.size,
+        "milliseconds_25": low,
+        "milliseconds_50": middle,
+        "milliseconds_75": high,
+        "frames_per_second": 1e3 / middle,
+        "published_frames_per_second": published_rate(result.scene.name, result.scene.phase.name),
+        "over_march": float(np.median(ratios)),
+        "over_march_low": least,
+        "over_march_high": most,
+        "clocked_over_plain": float(np.median(one.clocked / one.milliseconds)),
+        **{f"milliseconds_{name.replace(' ', '_')}": _median(one.passes.get(name)) for name in PASSES},
+        **{f"error_{name}": value for name, value in asdict(one.metrics).items()},
+        "rays": one.rays,
+        **{f"{name}_per_ray": value for name, value in one.counts.items()},
+        **asdict(one.footprint),
+    }
+
+
+def _median(values: Array | None) -> float:
+    """Of a pass; 0 where a technique has none of it."""
+    return 0.0 if values is None else float(np.median(values))
+
+
+def pair_rows(result: Result) -> list[Row]:
+    """A row a pair that can be compared in this scene."""
+    found = []
+    for pair in PAIRS:
+        first, second = (result.contenders[name] for name in (pair.first, pair.second))
+        if first.refusal or second.refusal:
+            continue
+        ratios = result.ratios(pair.first, pair.second)
+        low, high = median_interval(ratios)
+        passes = first.passes["scattering"] / second.passes["scattering"]
+        pass_low, pass_high = median_interval(passes)
+        found.append(
+            {
+                "scene": result.scene.name,
+                "phase": result.scene.phase.name,
+                "first": pair.first,
+                "second": pair.second,
+                "claim": pair.claim,
+                "first_steps": first.technique.steps,
+                "second_steps": second.technique.steps,
+                "rounds": ratios.size,
+                "ratio": float(np.median(ratios)),
+                "ratio_low": low,
+                "ratio_high": high,
+                "scattering_ratio": float(np.median(passes)),
+                "scattering_ratio_low": pass_low,
+                "scattering_ratio_high": pass_high,
+            }
+        )
+    return found
+
+
+def told(row: Row) -> str:
+    """What a pair's interval says, in words."""
+    if row["ratio_low"] > 1:
+        return "the second is faster"
+    if row["ratio_high"] < 1:
+        return "the first is faster"
+    return "no difference found"
+
+
+def fastest(result: Result) -> Measured | None:
+    """The fast row of a scene: the fastest of `FAST_ROWS`, of those within `ERROR_LIMITS` where there are any."""
+    drawn = [one for name in FAST_ROWS if not (one := result.contenders[name]).refusal]
+    within = list(filter(is_within, drawn))
+    return min(within or drawn, key=lambda one: float(np.median(one.milliseconds)), default=None)
+
+
+def is_within(one: Measured) -> bool:
+    """Whether a contender draws the scene with errors within `ERROR_LIMITS`."""
+    if one.refusal or one.metrics is None or one.metrics.rel_50 is None or one.metrics.rel_95 is None:
+        return False
+    return one.metrics.rel_50 <= ERROR_LIMITS[0] and one.metrics.rel_95 <= ERROR_LIMITS[1]

@@ -1,0 +1,115 @@
+"""The shadow-volume pass: on each ray of the lattice the first and the last shadow polygon of each light.
+
+"User just creates the frontmost shadow polygon and the final shadow polygon from the eye view" (Weng 2010, section 1.2;
+"front distance" and "final distance" of Figure 4.7). Edges of the light's silhouette are gathered on the GPU and drawn
+as polygons that go on behind them; blending keeps the smallest and the largest distance of each ray.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+from gpu_impl.camera_uniforms import camera_uniforms, world_to_clip
+from gpu_impl.device import Device
+from gpu_impl.light_uniforms import light_defines, light_uniforms
+from gpu_impl.passes.geometry import GBuffer
+from gpu_impl.passes.shadow_map import ShadowMap
+from gpu_impl.shader_source import set_uniforms
+from gpu_impl.silhouettes import Adjacency
+from gpu_impl.textures import PictureTextures
+from scenes.model import Array, Camera, Light, Scene
+
+# what a ray without a shadow polygon holds
+NO_CROSSING = 3e38
+# texture unit in the scattering pass, which binds shadow map, G-buffer and a spot's picture below
+POLYGONS_UNIT = 9
+# invocations of a work group of silhouette.comp.glsl
+GROUP = 128
+
+
+def render_shadow_polygons(
+    device: Device,
+    adjacency: Adjacency,
+    scene: Scene,
+    lights: tuple[Light, ...],
+    gbuffer: GBuffer,
+    shadow_maps: tuple[ShadowMap, ...],
+    pictures: PictureTextures,
+    *,
+    downsample: int,
+    repaired: bool,
+) -> Any:
+    """Draw the shadow polygons of all lights; the caller gives the texture back.
+
+    Parameters
+    ----------
+    downsample : the lattice is every so many pixels of the image
+    repaired : leave out crossings that cannot matter: behind the surface that the pixel sees, outside the light's cone
+        or the fog, and those of edges that something hides from the light. As printed, every polygon counts.
+
+    Returns
+    -------
+    texture array RG32F, a layer for each light
+        Of the lattice's size: t of the first crossing and -t of the last, along the ray as the contract has it [scene
+        unit]; NO_CROSSING in both where there is none.
+    """
+    context, camera = device.context, scene.camera
+    size = -(-camera.width // downsample), -(-camera.height // downsample)
+    polygons, limits = device.texture((*size, len(lights)), 2), device.texture(size, 4)
+    target = context.framebuffer(color_attachments=[polygons])
+    target.clear(NO_CROSSING, NO_CROSSING)
+    pixels = camera_uniforms(camera) | {"downsample": downsample}
+    program = device.program("shadow_volume/polygon.frag.glsl", vertex="shadow_volume/polygon.vert.glsl")
+    set_uniforms(program, pixels | {"limits": 0, "world_to_lattice": world_to_lattice(camera, downsample)})
+    array = context.vertex_array(program, [])
+    adjacency.bind()
+    for layer, (light, shadow_map) in enumerate(zip(lights, shadow_maps, strict=True)):
+        defines = light_defines(scene, light) | shadow_map.defines | {"CULL": int(repaired)}
+        uniforms = light_uniforms(scene, light, pictures) | shadow_map.bind(unit=0)
+        # no corners of one instance; `reach` grows to what is seen, or is without end from the beginning
+        adjacency.draw_call.write(struct.pack("4If", 0, 1, 0, 0, 0.0 if repaired else NO_CROSSING))
+        narrow = device.program("shadow_volume/limits.frag.glsl", defines=defines)
+        set_uniforms(narrow, pixels | uniforms | gbuffer.bind(first_unit=1))
+        device.fill(narrow, limits)
+        context.memory_barrier()
+        gather = device.compute("shadow_volume/silhouette.comp.glsl", defines)
+        set_uniforms(gather, uniforms | {"edge_count": adjacency.edge_count})
+        gather.run(-(-adjacency.edge_count // GROUP))
+        context.memory_barrier()
+        set_uniforms(program, uniforms | {"layer": layer})
+        limits.use(0)
+        target.use()
+        context.enable(context.BLEND)
+        context.blend_equation = context.MIN
+        array.render_indirect(adjacency.draw_call, context.TRIANGLES, count=1)
+        context.blend_equation = context.FUNC_ADD
+        context.disable(context.BLEND)
+    array.release()
+    target.release()
+    device.give_back(limits)
+    return polygons
+
+
+def bind_polygons(polygons: Any, layer: int, camera: Camera, downsample: int) -> dict[str, Any]:
+    """Bind what `render_shadow_polygons` drew and give the uniforms of shadow_region.glsl."""
+    polygons.use(POLYGONS_UNIT)
+    # the last column and row may stand for a pixel that was pushed back into the image
+    exact = tuple((pixels - 1 - downsample // 2) // downsample + 1 for pixels in (camera.width, camera.height))
+    return {"shadow_polygons": POLYGONS_UNIT, "polygon_layer": layer, "exact_polygons": exact}
+
+
+def world_to_lattice(camera: Camera, downsample: int) -> Array:
+    """World to the clip space of the lattice, (4, 4); its pixel p is centred where the image's p * N + N // 2 is.
+
+    Depth is made so that OpenGL clips at half the near plane and nowhere else; points without end (w = 0) keep theirs.
+    """
+    clip = world_to_clip(camera)
+    matrix = clip.copy()
+    # in pixels of the image from its corner: x = N (p + 1/2) + shift at the centre of the lattice's pixel p
+    shift = (1 - downsample) / 2 + downsample // 2
+    for row, pixels in enumerate((camera.width, camera.height)):
+        lattice = -(-pixels // downsample) * downsample
+        matrix[row] = (pixels * clip[row] + (pixels - lattice - 2 * shift) * clip[3]) / lattice
+    matrix[2] = clip[3] - [0, 0, 0, camera.near]
+    return matrix

@@ -1,0 +1,29 @@
+// The part of a lattice pixel's ray in which fog scatters a light towards the eye.
+#include "camera_ray.glsl"
+#include "fog.glsl"
+
+uniform sampler2D normal_and_distance;   // distance 0: no surface, the ray ends on the far plane
+uniform int downsample;
+
+// Which pixel of the image stands for a pixel of the lattice. The last of a row or column may have been pushed back into
+// the image.
+ivec2 pixel_of(ivec2 lattice) { return min(lattice * downsample + downsample / 2, image_size - 1); }
+
+// A ray that begins in the fog and ends in it, since what is before does not weaken it; it begins `start` behind where
+// camera_ray() does. t_max is not positive where there is no fog.
+Ray ray_in_fog(ivec2 pixel, Light light, out float start) {
+    Ray ray = camera_ray(pixel);
+    float surface = texelFetch(normal_and_distance, pixel, 0).w;
+    if (surface > 0.0) ray.t_max = surface;
+    vec2 fog = fog_interval(ray.o, ray.d, vec2(0.0, ray.t_max));
+    start = fog.x;
+    ray.o += fog.x * ray.d;
+    ray.t_max = fog.y - fog.x;
+#if WHOLE_LEG == 1
+    // Past the light both legs grow: 16 mean free paths behind its projection float32 has nothing left to add.
+    float thinnest = min(sigma_t.x, min(sigma_t.y, sigma_t.z));
+    float t_h = dot(light.position - ray.o, ray.d);
+    ray.t_max = min(ray.t_max, max(t_h, 0.0) + 16.0 / max(thinnest, 1e-30));
+#endif
+    return ray;
+}
