@@ -39,7 +39,7 @@ class Device:
         if key not in self._programs:
             self._programs[key] = compile_program(
                 self.context,
-                ShaderSource(vertex),
+                ShaderSource(vertex, defines),
                 ShaderSource(fragment, defines, includes, generated),
             )
         return self._programs[key]

@@ -58,6 +58,7 @@ def light_defines(scene: Scene, light: Light) -> dict[str, int]:
     in_fog = holder is None or (light.kind != "directional" and bool(holder.contains(light.position)))
     return {
         **fog_defines(scene),
+        "DIRECTIONAL": int(light.kind == "directional"),
         "WHOLE_LEG": int(in_fog),
         "SPOT": 0 if light.kind != "spot" else 1 if light.beam_width >= light.cutoff_angle else 2,
         "SPOT_TEXTURE": int(light.texture is not None),
@@ -73,7 +74,6 @@ def light_uniforms(scene: Scene, light: Light, pictures: PictureTextures) -> dic
         "light.intensity": tuple(light.intensity),
         "light.beam_width": light.beam_width,
         "light.cutoff_angle": light.cutoff_angle,
-        "light.directional": light.kind == "directional",
         "tan_cutoff": float(np.tan(light.cutoff_angle)),
     }
     if light.texture is not None:

@@ -101,20 +101,24 @@ class Technique:
 SETTINGS = tuple(field.name for field in fields(Technique) if field.default is not MISSING)
 
 
-def _of_the_thesis() -> Iterator[Technique]:
-    """Weng 2010 with each of its airlight models, called after what follows the model's colon."""
+def _variants_of_weng2010() -> Iterator[Technique]:
+    """Weng 2010 with each of its airlight models that has a name of its own behind a colon, and called after it."""
     for model in AIRLIGHT_MODELS:
         family, _, variant = model.partition(":")
-        if family == "weng2010":
+        if family == "weng2010" and variant:
             visibility = "lit_intervals:printed" if variant == "printed" else "lit_intervals"
-            yield Technique(f"Weng2010:{variant}".removesuffix(":"), visibility, model, steps=CELL_STEPS)
+            yield Technique(f"Weng2010:{variant}", visibility, model, steps=CELL_STEPS)
 
 
 TECHNIQUES = {
     technique.name: technique
     for technique in (
         Technique("Nishita1987", "uniform_march", "riemann"),
-        *_of_the_thesis(),
+        # repaired, by the exact forms of all phase functions that have one
+        Technique("Weng2010", "lit_intervals", "one_ei", steps=CELL_STEPS),
+        *_variants_of_weng2010(),
+        # the artefact of Weng 2010, Figure 1.1
+        Technique("FrontFinal", "front_final", "one_ei", steps=CELL_STEPS),
     )
 }
 

@@ -30,16 +30,15 @@ BASELINE = Contender("march", "Nishita1987")
 CONTENDERS = (
     BASELINE,
     Contender("fast", "Weng2010", FAST),
-    Contender("fast, one Ei", "lit_intervals+one_ei", FAST),
     Contender("fast, quadrature", "lit_intervals+quadrature", FAST),
-    Contender("merged", "Weng2010", FULL),
+    Contender("repaired", "Weng2010"),
+    Contender("merged", "lit_intervals+weng2010"),
     Contender("four Ei", "Weng2010:four-ei"),
     Contender("three Ei", "Weng2010:three-ei"),
     Contender("two Ei", "Weng2010:two-ei"),
     Contender("Taylor", "Weng2010:taylor"),
     Contender("minimax", "Weng2010:minimax"),
     Contender("as printed", "Weng2010:printed"),
-    Contender("one Ei", "lit_intervals+one_ei"),
     Contender("quadrature", "lit_intervals+quadrature"),
     Contender("whole ray, as many samples", "lit_intervals:unbounded+quadrature"),
     # it takes as many samples as give the spacing of "quadrature", scene by scene: see measurement.py

@@ -60,9 +60,7 @@ def render_shadow_polygons(
     target = context.framebuffer(color_attachments=[polygons])
     target.clear(NO_CROSSING, NO_CROSSING)
     pixels = camera_uniforms(camera) | {"downsample": downsample}
-    program = device.program("shadow_volume/polygon.frag.glsl", vertex="shadow_volume/polygon.vert.glsl")
-    set_uniforms(program, pixels | {"limits": 0, "world_to_lattice": world_to_lattice(camera, downsample)})
-    array = context.vertex_array(program, [])
+    lattice = pixels | {"limits": 0, "world_to_lattice": world_to_lattice(camera, downsample)}
     adjacency.bind()
     for layer, (light, shadow_map) in enumerate(zip(lights, shadow_maps, strict=True)):
         defines = light_defines(scene, light) | shadow_map.defines | {"CULL": int(repaired)}
@@ -77,7 +75,9 @@ def render_shadow_polygons(
         set_uniforms(gather, uniforms | {"edge_count": adjacency.edge_count})
         gather.run(-(-adjacency.edge_count // GROUP))
         context.memory_barrier()
-        set_uniforms(program, uniforms | {"layer": layer})
+        program = device.program("shadow_volume/polygon.frag.glsl", "shadow_volume/polygon.vert.glsl", defines)
+        set_uniforms(program, lattice | uniforms | {"layer": layer})
+        array = context.vertex_array(program, [])
         limits.use(0)
         target.use()
         context.enable(context.BLEND)
@@ -85,7 +85,7 @@ def render_shadow_polygons(
         array.render_indirect(adjacency.draw_call, context.TRIANGLES, count=1)
         context.blend_equation = context.FUNC_ADD
         context.disable(context.BLEND)
-    array.release()
+        array.release()
     target.release()
     device.give_back(limits)
     return polygons

@@ -8,8 +8,9 @@
 struct Ray { vec3 o; vec3 d; float t_max; };
 
 // A point or spot light has an intensity [W/sr], and half-angles [rad] that are pi for a point light. A directional light
-// has an irradiance in place of the intensity, travels along `direction`, and its position is any point before the scene.
-struct Light { vec3 position; vec3 direction; vec3 intensity; float beam_width; float cutoff_angle; bool directional; };
+// (DIRECTIONAL 1) has an irradiance in place of the intensity, travels along `direction`, and its position is any point
+// before the scene.
+struct Light { vec3 position; vec3 direction; vec3 intensity; float beam_width; float cutoff_angle; };
 
 // The medium [1 / scene unit].
 uniform vec3 sigma_s;
@@ -21,7 +22,7 @@ uniform vec3 sigma_t;
 //     vec3 airlight(Ray ray, Light light, float t0, float dt)
 // the radiance that reaches the eye from the lit piece [t0, t0 + dt], the eye leg's transmittance included.
 // dt is passed explicitly because float32 loses it in t1 - t0. WHOLE_LEG is 1 where the light is a point in the fog,
-// so that all of its way to the piece is; otherwise the model asks light_leg() (fog.glsl), or takes no such scene.
+// so that all of its way to the piece is; otherwise the model asks light_leg() (light_leg.glsl), or takes no such scene.
 vec3 airlight(Ray ray, Light light, float t0, float dt);
 // A model that works on one extinction coefficient at a time, and gives the colour that all channels would have with it,
 // runs once in grey fog, three times in coloured fog.

@@ -33,16 +33,3 @@ vec2 fog_interval(vec3 o, vec3 d, vec2 line) {
 vec3 transmittance(float length_in_fog) {
     return GREY == 1 ? vec3(exp(-sigma_t.x * length_in_fog)) : exp(-sigma_t * length_in_fog);
 }
-
-// How much of the way from a point to the light is fog.
-float light_leg(Light light, vec3 point) {
-    vec3 to_light = light.directional ? -light.direction : light.position - point;
-    float d = light.directional ? 3e38 : length(to_light);
-#if FOG_PLANES == 0 && FOG_BALL == 0
-    return d;
-#else
-    if (d == 0.0) return 0.0;
-    vec2 line = fog_interval(point, light.directional ? to_light : to_light / d, vec2(0.0, d));
-    return line.y - line.x;
-#endif
-}

@@ -56,7 +56,7 @@ float nearest_surface(Light light, vec3 point) {
 
 // What the map holds distances of.
 float distance_from(Light light, vec3 point) {
-    return light.directional ? dot(point - light.position, light.direction) : distance(point, light.position);
+    return DIRECTIONAL == 1 ? dot(point - light.position, light.direction) : distance(point, light.position);
 }
 
 bool in_shadow(Light light, vec3 point) { return distance_from(light, point) > nearest_surface(light, point); }

@@ -2,7 +2,7 @@
 // Fog attenuates it on its way to the surface, which the print of Eq. 14 leaves out (LIGHT_LEG 0).
 #include "camera_ray.glsl"
 #include "light.glsl"
-#include "fog.glsl"
+#include "light_leg.glsl"
 #include "gbuffer.glsl"
 #include "surface_shadow.glsl"
 
@@ -19,7 +19,7 @@ void main() {
     Ray ray = camera_ray(pixel);
     vec3 point = ray.o + surface.w * ray.d;
     float d = distance_from(light, point);
-    vec3 l = light.directional ? -light.direction : (light.position - point) / d;
+    vec3 l = DIRECTIONAL == 1 ? -light.direction : (light.position - point) / d;
     float cos_eye = dot(surface.xyz, -ray.d), cos_light = dot(surface.xyz, l);
     result = vec4(0.0);
     if (surface.w == 0.0) return;
@@ -36,6 +36,6 @@ void main() {
 #endif
     float share = share_lit(light, point, unpacked_direction(material.a));
     if (share == 0.0) return;
-    result.rgb = share * reflected * cos_light * light.intensity * angular(light, point) / (light.directional ? 1.0 : d * d);
+    result.rgb = share * reflected * cos_light * light.intensity * angular(light, point) / (DIRECTIONAL == 1 ? 1.0 : d * d);
     if (LIGHT_LEG == 1) result.rgb *= transmittance(light_leg(light, point));
 }

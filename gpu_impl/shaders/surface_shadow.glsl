@@ -28,11 +28,11 @@ struct Receiver { vec3 point; vec3 normal; vec3 position; float distance; float 
 
 // normal: of the triangle that `point` lies on, of any length; position: of the point in the map
 Receiver receiver_of(Light light, vec3 point, vec3 normal, vec3 position) {
-    float d = distance_from(light, point), slack = texel_slope * (light.directional ? 1.0 : d);
+    float d = distance_from(light, point), slack = texel_slope * (DIRECTIONAL == 1 ? 1.0 : d);
     // The neighbouring triangle that the texel may see leaves the plane by some of a texel, more where the light grazes.
     // This much balances light that leaks in against surfaces that shade themselves: on the shipped scenes at 512 x 512,
     // with 1,024 and 2,048 texels, the surface layer's mean is off by at most 0.22 %.
-    vec3 l = light.directional ? -light.direction : (light.position - point) / d;
+    vec3 l = DIRECTIONAL == 1 ? -light.direction : (light.position - point) / d;
     float slope = length(cross(normal, l)) / max(abs(dot(normal, l)), 1e-30);
     return Receiver(point, normal, position, d, slack, slack * min(0.25 * slope, 0.5));
 }
@@ -41,7 +41,7 @@ Receiver receiver_of(Light light, vec3 point, vec3 normal, vec3 position) {
 bool is_lit_in(Light light, Receiver receiver, ivec2 texel, float tile, float apart) {
     vec3 centre = vec3(middle_of(texel), tile);
     float here;
-    if (light.directional) {
+    if (DIRECTIONAL == 1) {
         vec3 x = tile_row(0), y = tile_row(1);
         vec2 offset = centre.xy - receiver.position.xy;
         vec3 aside = offset.x * x / dot(x, x) + offset.y * y / dot(y, y);

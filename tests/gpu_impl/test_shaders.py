@@ -30,7 +30,7 @@ PASSES = [
     ("shadow_volume/polygon.vert.glsl", "shadow_volume/polygon.frag.glsl"),
 ]
 COMPUTE = "shadow_volume/silhouette.comp.glsl"
-RAY_AND_LIGHT = "Ray(vec3(0), vec3(0, 0, 1), 1.0), Light(vec3(1), vec3(0, 0, 1), vec3(1), 3.14, 3.14, false)"
+RAY_AND_LIGHT = "Ray(vec3(0), vec3(0, 0, 1), 1.0), Light(vec3(1), vec3(0, 0, 1), vec3(1), 3.14, 3.14)"
 LIT = "void lit(float t0, float dt, float w) { result += vec4(t0, dt, w, 1.0); }\n"
 # what the contract leaves to the other parts, and a call, so that the linker keeps what is tested
 STUBS = {
@@ -52,6 +52,7 @@ PLAIN = {
     "TILES": 6,
     "GREY": 0,
     "STEPS": 4,
+    "DIRECTIONAL": 0,
     "WHOLE_LEG": 1,
     "FOG_PLANES": 0,
     "FOG_BALL": 0,
@@ -66,7 +67,7 @@ VARIANTS = [
     PLAIN | {"TILES": 1, "SOFT_SHADOWS": 1, "GREY": 1, "SPOT": 2, "SPOT_TEXTURE": 1, "PICTURE": 1, "CULL": 1},
     PLAIN | {"SOFT_SHADOWS": 1, "SHADOW_BUFFER": 2, "FOG_PLANES": 6, "WHOLE_LEG": 0},
     PLAIN | {"TILES": 1, "SPOT": 1, "FOG_BALL": 1, "WHOLE_LEG": 0, "SPECULAR": 1},
-    PLAIN | {"GREY": 1, "FOG_PLANES": 64, "SPOT_TEXTURE": 1, "WHOLE_LEG": 0},
+    PLAIN | {"TILES": 1, "DIRECTIONAL": 1, "GREY": 1, "FOG_PLANES": 64, "WHOLE_LEG": 0},
 ]
 
 
@@ -111,7 +112,7 @@ def test_an_include_compiles_on_its_own(name: str) -> None:
 @pytest.mark.parametrize("defines", VARIANTS, ids=str)
 def test_a_pass_compiles(vertex: str, fragment: str, defines: dict[str, int]) -> None:
     source = ShaderSource(fragment, defines, {"<upsampling>": "upsampling/bilateral.glsl"})
-    compile_program(shared_context(), ShaderSource(vertex), source).release()
+    compile_program(shared_context(), ShaderSource(vertex, defines), source).release()
 
 
 @pytest.mark.parametrize("defines", VARIANTS, ids=str)

@@ -28,14 +28,14 @@ from gpu_impl.shader_source import set_uniforms
 CELLS, WIDTH, SEED = 16, 1024, 7
 SIGMA_T = (0.13, 0.37, 0.9, 1.7, 4.1, 9.3)
 # a grey medium that fills space, and a point light
-DEFINES = {"GREY": 1, "WHOLE_LEG": 1, "FOG_PLANES": 0, "FOG_BALL": 0, "SPOT": 0, "SPOT_TEXTURE": 0}
+DEFINES = {"GREY": 1, "DIRECTIONAL": 0, "WHOLE_LEG": 1, "FOG_PLANES": 0, "FOG_BALL": 0, "SPOT": 0, "SPOT_TEXTURE": 0}
 MAIN = """layout(location = 0) out vec4 result;
 #include "<airlight>"
 uniform sampler2D pieces;
 void main() {
     vec4 piece = texelFetch(pieces, ivec2(gl_FragCoord.xy), 0);   // h, t_h, t0, dt
     Ray ray = Ray(vec3(0.0), vec3(0.0, 0.0, 1.0), piece.z + piece.w);
-    Light light = Light(vec3(piece.x, 0.0, piece.y), vec3(0.0, 0.0, 1.0), vec3(1.0), 3.15, 3.15, false);
+    Light light = Light(vec3(piece.x, 0.0, piece.y), vec3(0.0, 0.0, 1.0), vec3(1.0), 3.15, 3.15);
     START_COUNTING;
     result = vec4(airlight(ray, light, piece.z, piece.w), 0.0);
 #ifdef COUNTING

@@ -5,7 +5,7 @@
 // the length a / c, c the rate at which it nears the plane. Both grow with q = a / c, so the plane with the least q
 // decides; q is linear along the ray, and between the places where another plane takes over everything is smooth.
 #include "light.glsl"
-#include "fog.glsl"
+#include "light_leg.glsl"
 
 const float THICKEST = 8.0;   // optical depth that one set of nodes takes
 const int MOST_PARTS = 64;
@@ -24,14 +24,14 @@ vec3 smooth_piece(Ray ray, Light light, float t0, float dt) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < NODES; ++i) {
         float tangent = tan(angle * NODE[i]);
-        float t = t0 + (light.directional ? dt * NODE[i]
+        float t = t0 + (DIRECTIONAL == 1 ? dt * NODE[i]
                                           : tangent * (p.h * p.h + s_a * s_a) / (p.h - s_a * tangent));
         vec3 point = ray.o + t * ray.d;
-        vec3 l = light.directional ? -light.direction : normalize(light.position - point);
+        vec3 l = DIRECTIONAL == 1 ? -light.direction : normalize(light.position - point);
         vec2 half_angle = 0.25 * vec2(dot(l + ray.d, l + ray.d), dot(l - ray.d, l - ray.d));
         sum += WEIGHT[i] * phase(half_angle) * angular(light, point) * exp(-sigma_t * (t + light_leg(light, point)));
     }
-    return sum * (light.directional ? dt : angle / p.h);
+    return sum * (DIRECTIONAL == 1 ? dt : angle / p.h);
 }
 
 vec3 in_parts(Ray ray, Light light, float t0, float dt) {
@@ -60,7 +60,7 @@ vec3 through_boundary(Ray ray, Light light, float t0, float dt) {
         for (int pass = 0; pass < 2; ++pass) {
             for (int i = 0; i < FOG_PLANES; ++i) {
                 vec3 n = fog_planes[i].xyz;
-                float c = light.directional ? -dot(n, light.direction) : dot(n, light.position) - fog_planes[i].w;
+                float c = DIRECTIONAL == 1 ? -dot(n, light.direction) : dot(n, light.position) - fog_planes[i].w;
                 if (c <= 0.0) continue;
                 float q = max(fog_planes[i].w - dot(n, ray.o + t * ray.d), 0.0) / c, dq = -dot(n, ray.d) / c;
                 if (pass == 0 && (q < level || (q == level && dq < slope))) { level = q; slope = dq; }
@@ -69,7 +69,7 @@ vec3 through_boundary(Ray ray, Light light, float t0, float dt) {
             }
         }
         float length = next - t;
-        if (light.directional) {
+        if (DIRECTIONAL == 1) {
             vec2 half_angle = 0.5 + 0.5 * vec2(-1.0, 1.0) * dot(light.direction, ray.d);
             sum += phase(half_angle) * length
                  * mean_transmittance(sigma_t * (t + level), sigma_t * (next + level + slope * length));

@@ -49,7 +49,7 @@ vec3 unit_airlight(Ray ray, Light light, float t0, float dt) {
 vec3 airlight(Ray ray, Light light, float t0, float dt) {
     vec3 scale = light.intensity * sigma_s;
     // parallel light is scattered by one angle all along the ray
-    int kinks = light.directional ? 0 : phase_kinks();
+    int kinks = DIRECTIONAL == 1 ? 0 : phase_kinks();
     if (kinks == 0) return scale * unit_airlight(ray, light, t0, dt);
     // a table is smooth between two of its values
     Passage p = passage(ray, light);

@@ -14,7 +14,7 @@ layout(std430, binding = 7) restrict buffer Draw { uint corners, instances, firs
 const uint QUAD_CORNERS = 6u;   // of its two triangles
 
 // Where a polygon goes on behind a vertex, whatever the length.
-vec3 away_from(Light light, vec3 vertex) { return light.directional ? light.direction : vertex - light.position; }
+vec3 away_from(Light light, vec3 vertex) { return DIRECTIONAL == 1 ? light.direction : vertex - light.position; }
 
 // Normal of the plane through the light and an edge. The edge itself is short, and its difference is nearly exact.
 vec3 shadow_plane(Light light, vec3 a, vec3 b) { return cross(away_from(light, a), b - a); }

@@ -18,7 +18,7 @@ const float OVERLAP = 1.0 / 16.0;
 vec4 far_corner(vec3 v, float end) {
     vec3 away = away_from(light, v);
     if (end > 1e6) return vec4(away, 0.0);
-    return vec4(light.directional ? v + away * max(end - dot(v - light.position, away), 0.0)
+    return vec4(DIRECTIONAL == 1 ? v + away * max(end - dot(v - light.position, away), 0.0)
                                   : light.position + away * max(end, 1.0), 1.0);
 }
 

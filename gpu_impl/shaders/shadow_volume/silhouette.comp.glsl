@@ -60,7 +60,7 @@ float end_of_polygon(vec3 a, vec3 b) {
 }
 
 float nearest_point(vec3 a, vec3 b) {
-    if (light.directional) return min(distance_from(light, a), distance_from(light, b));
+    if (DIRECTIONAL == 1) return min(distance_from(light, a), distance_from(light, b));
     vec3 along = b - a;
     float share = clamp(dot(light.position - a, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
     return distance(light.position, a + share * along);
@@ -78,6 +78,6 @@ void main() {
     end = end_of_polygon(a, b);
     if (nearest > end) return;
 #endif
-    if (!light.directional) end /= nearest;
+    if (DIRECTIONAL == 0) end /= nearest;
     silhouette[atomicAdd(corners, QUAD_CORNERS) / QUAD_CORNERS] = uvec4(edge.xy, floatBitsToUint(end), 0u);
 }
