@@ -11,6 +11,7 @@ import numpy as np
 from gpu_impl.device import Device, shared_device
 from gpu_impl.frame import Frame
 from gpu_impl.geometry import Geometry
+from gpu_impl.lattice import Lattice
 from gpu_impl.light_uniforms import placed
 from gpu_impl.motion import moved
 from gpu_impl.passes.combination import combine
@@ -237,7 +238,7 @@ class Renderer:
         return View(gbuffer, shadow_maps, surface)
 
     def _scatter(self, technique: Technique, view: View, counts: Any = None) -> Any:
-        """Evaluate the fog on every N-th pixel, and count into a texture of that size; the caller gives back the result."""
+        """Evaluate the fog on every N-th pixel, counting into a texture of that size; the caller gives the result back."""
         texture, polygons = self._lattice_texture(technique), self._shadow_polygons(technique, view)
         with self._clock.time_pass("scattering"):
             for i, (light, shadow_map) in enumerate(zip(self._lights, view.shadow_maps, strict=True)):
@@ -275,7 +276,7 @@ class Renderer:
                 view.gbuffer,
                 view.shadow_maps,
                 self._pictures,
-                downsample=technique.downsample,
+                lattice=Lattice.of(self.scene.camera, technique.downsample),
                 repaired=wanted == "repaired",
             )
 
@@ -289,8 +290,7 @@ class Renderer:
         return surface, scattering
 
     def _lattice_texture(self, technique: Technique) -> Any:
-        camera, step = self.scene.camera, technique.downsample
-        return self.device.texture((-(-camera.width // step), -(-camera.height // step)), 4)
+        return self.device.texture(Lattice.of(self.scene.camera, technique.downsample).size, 4)
 
     def _full_size_texture(self) -> Any:
         return self.device.texture((self.scene.camera.width, self.scene.camera.height), 4)

@@ -73,10 +73,13 @@ class Technique:
             value = getattr(self, setting)
             # asked of a tuple, which takes what cannot be hashed too
             if value not in tuple(known):
-                what = {"airlight": "airlight model"}.get(setting, setting)
-                raise InputError(
-                    f"There is no {what} '{readable(str(value))}'; use one of {', '.join(map(str, known))}."
+                what = {"airlight": "airlight model"}.get(setting, setting.replace("_", " "))
+                found = (
+                    f"{setting} is {value}"
+                    if setting == "downsample"
+                    else f"There is no {what} '{readable(str(value))}'"
                 )
+                raise InputError(f"{found}; use one of {', '.join(map(str, known))}.")
 
     def check_scene(self, scene: Scene) -> None:
         """Raise InputError where the airlight model cannot take the scene's phase function or one of its lights."""

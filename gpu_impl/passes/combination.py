@@ -11,6 +11,7 @@ from typing import Any
 
 from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import Device
+from gpu_impl.lattice import Lattice
 from gpu_impl.light_uniforms import fog_defines, fog_uniforms
 from gpu_impl.passes.geometry import GBuffer
 from gpu_impl.shader_source import set_uniforms
@@ -38,8 +39,8 @@ def combine(
     surface : RGBA32F    light as it leaves the surfaces
     airlight : RGBA32F   airlight and pieces, evaluated on every `technique.downsample`-th pixel
     """
-    uniforms = camera_uniforms(scene.camera) | fog_uniforms(scene) | UNITS | {"downsample": technique.downsample}
-    uniforms |= gbuffer.bind(FIRST_GBUFFER_UNIT)
+    uniforms = camera_uniforms(scene.camera) | fog_uniforms(scene) | UNITS
+    uniforms |= Lattice.of(scene.camera, technique.downsample).uniforms | gbuffer.bind(FIRST_GBUFFER_UNIT)
     surface.use(UNITS["surface"])
     defines = fog_defines(scene) | {"SPLIT": int(len(targets) == 2), "DOWNSAMPLED": int(technique.downsample > 1)}
 

@@ -12,6 +12,7 @@ from analytic.phase import Phase
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import Device
+from gpu_impl.lattice import Lattice
 from gpu_impl.light_uniforms import light_defines, light_uniforms
 from gpu_impl.passes.geometry import GBuffer
 from gpu_impl.passes.shadow_map import ShadowMap
@@ -67,9 +68,9 @@ def add_scattering(
     )
     set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, pictures))
     set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))
-    set_uniforms(program, {"downsample": technique.downsample})
+    set_uniforms(program, Lattice.of(scene.camera, technique.downsample).uniforms)
     if polygons:
-        set_uniforms(program, bind_polygons(polygons, layer, scene.camera, technique.downsample))
+        set_uniforms(program, bind_polygons(polygons, layer))
     with phase_uniforms(device, program, scene.phase):
         device.fill(program, *filter(None, (target, counts)), add=not first)
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from gpu_impl.camera_uniforms import camera_uniforms, world_to_clip
 from gpu_impl.device import Device
+from gpu_impl.lattice import Lattice
 from gpu_impl.light_uniforms import light_defines, light_uniforms
 from gpu_impl.passes.geometry import GBuffer
 from gpu_impl.passes.shadow_map import ShadowMap
@@ -37,14 +38,13 @@ def render_shadow_polygons(
     shadow_maps: tuple[ShadowMap, ...],
     pictures: PictureTextures,
     *,
-    downsample: int,
+    lattice: Lattice,
     repaired: bool,
 ) -> Any:
     """Draw the shadow polygons of all lights; the caller gives the texture back.
 
     Parameters
     ----------
-    downsample : the lattice is every so many pixels of the image
     repaired : leave out crossings that cannot matter: behind the surface that the pixel sees, outside the light's cone
         or the fog, and those of edges that something hides from the light. As printed, every polygon counts.
 
@@ -55,12 +55,11 @@ def render_shadow_polygons(
         unit]; NO_CROSSING in both where there is none.
     """
     context, camera = device.context, scene.camera
-    size = -(-camera.width // downsample), -(-camera.height // downsample)
-    polygons, limits = device.texture((*size, len(lights)), 2), device.texture(size, 4)
+    polygons, limits = device.texture((*lattice.size, len(lights)), 2), device.texture(lattice.size, 4)
     target = context.framebuffer(color_attachments=[polygons])
     target.clear(NO_CROSSING, NO_CROSSING)
-    pixels = camera_uniforms(camera) | {"downsample": downsample}
-    lattice = pixels | {"limits": 0, "world_to_lattice": world_to_lattice(camera, downsample)}
+    pixels = camera_uniforms(camera) | lattice.uniforms
+    drawn = pixels | {"limits": 0, "world_to_lattice": world_to_lattice(camera, lattice)}
     adjacency.bind()
     for layer, (light, shadow_map) in enumerate(zip(lights, shadow_maps, strict=True)):
         defines = light_defines(scene, light) | shadow_map.defines | {"CULL": int(repaired)}
@@ -76,7 +75,7 @@ def render_shadow_polygons(
         gather.run(-(-adjacency.edge_count // GROUP))
         context.memory_barrier()
         program = device.program("shadow_volume/polygon.frag.glsl", "shadow_volume/polygon.vert.glsl", defines)
-        set_uniforms(program, lattice | uniforms | {"layer": layer})
+        set_uniforms(program, drawn | uniforms | {"layer": layer})
         array = context.vertex_array(program, [])
         limits.use(0)
         target.use()
@@ -91,25 +90,23 @@ def render_shadow_polygons(
     return polygons
 
 
-def bind_polygons(polygons: Any, layer: int, camera: Camera, downsample: int) -> dict[str, Any]:
+def bind_polygons(polygons: Any, layer: int) -> dict[str, Any]:
     """Bind what `render_shadow_polygons` drew and give the uniforms of shadow_region.glsl."""
     polygons.use(POLYGONS_UNIT)
-    # the last column and row may stand for a pixel that was pushed back into the image
-    exact = tuple((pixels - 1 - downsample // 2) // downsample + 1 for pixels in (camera.width, camera.height))
-    return {"shadow_polygons": POLYGONS_UNIT, "polygon_layer": layer, "exact_polygons": exact}
+    return {"shadow_polygons": POLYGONS_UNIT, "polygon_layer": layer}
 
 
-def world_to_lattice(camera: Camera, downsample: int) -> Array:
-    """World to the clip space of the lattice, (4, 4); its pixel p is centred where the image's p * N + N // 2 is.
+def world_to_lattice(camera: Camera, lattice: Lattice) -> Array:
+    """World to the clip space of the lattice, (4, 4), whose pixels are centred where those of the image are.
 
     Depth is made so that OpenGL clips at half the near plane and nowhere else; points without end (w = 0) keep theirs.
     """
     clip = world_to_clip(camera)
     matrix = clip.copy()
-    # in pixels of the image from its corner: x = N (p + 1/2) + shift at the centre of the lattice's pixel p
-    shift = (1 - downsample) / 2 + downsample // 2
     for row, pixels in enumerate((camera.width, camera.height)):
-        lattice = -(-pixels // downsample) * downsample
-        matrix[row] = (pixels * clip[row] + (pixels - lattice - 2 * shift) * clip[3]) / lattice
+        # in pixels of the image from its corner: x = N (p + 1/2) + shift at the centre of the lattice's pixel p
+        shift = (1 - lattice.step) / 2 + lattice.first[row]
+        covered = lattice.size[row] * lattice.step
+        matrix[row] = (pixels * clip[row] + (pixels - covered - 2 * shift) * clip[3]) / covered
     matrix[2] = clip[3] - [0, 0, 0, camera.near]
     return matrix

@@ -1,13 +1,9 @@
 // The part of a lattice pixel's ray in which fog scatters a light towards the eye.
 #include "camera_ray.glsl"
 #include "fog.glsl"
+#include "lattice.glsl"
 
 uniform sampler2D normal_and_distance;   // distance 0: no surface, the ray ends on the far plane
-uniform int downsample;
-
-// Which pixel of the image stands for a pixel of the lattice. The last of a row or column may have been pushed back into
-// the image.
-ivec2 pixel_of(ivec2 lattice) { return min(lattice * downsample + downsample / 2, image_size - 1); }
 
 // A ray that begins in the fog and ends in it, since what is before does not weaken it; it begins `start` behind where
 // camera_ray() does. t_max is not positive where there is no fog.

@@ -7,7 +7,6 @@
 
 uniform sampler2DArray shadow_polygons;   // passes/shadow_volume.py
 uniform int polygon_layer;                // of the light that is drawn
-uniform ivec2 exact_polygons;             // so many columns and rows of the lattice stand where they would without the image's end
 
 const float NO_CROSSING = 3e38;
 
@@ -36,8 +35,6 @@ bool is_dark(Ray ray, Light light, float begin, float end) {
 // ray is lit. It begins with the range where the eye is in a shadow volume, and ends with it where the end is dark; empty,
 // at the range's end, where the ray meets no shadow.
 vec2 shadow_region(Ray ray, Light light, vec2 range) {
-    // the rasteriser drew no ray for a pixel that was pushed back into the image
-    if (any(greaterThanEqual(ivec2(gl_FragCoord.xy), exact_polygons))) return range;
     vec2 polygons = front_and_final();
     if (polygons.x > polygons.y) return is_dark(ray, light, range.x, range.y) ? range : range.yy;
     return vec2(is_dark(ray, light, range.x, polygons.x) ? range.x : polygons.x,

@@ -29,9 +29,10 @@ QUADRATURE = "lit_intervals+quadrature"
 def bilinear(image: np.ndarray, step: int) -> np.ndarray:
     """What plain interpolation makes of every `step`-th pixel."""
     height, width, _ = image.shape
-    rows, columns = (np.minimum(np.arange(-(-n // step)) * step + step // 2, n - 1) for n in (height, width))
+    first = [min(step // 2, (n - 1) % step) for n in (height, width)]
+    rows, columns = (np.arange(f, n, step) for f, n in zip(first, (height, width), strict=True))
     coarse = image[rows][:, columns]
-    y, x = ((np.arange(n) - step // 2) / step for n in (height, width))
+    y, x = ((np.arange(n) - f) / step for f, n in zip(first, (height, width), strict=True))
     y0, x0 = np.floor(y).astype(int), np.floor(x).astype(int)
 
     def at(row: np.ndarray, column: np.ndarray) -> np.ndarray:
@@ -93,8 +94,12 @@ def test_any_size(size: tuple[int, int], step: int, draw) -> None:
     assert np.isfinite(frame.composite).all()
     assert (frame.scattering > 0).all()
     if size == (1, 1):
-        # one pixel, and whatever the step it is the one that is evaluated
-        assert frame.scattering == pytest.approx(draw(scene, "Weng2010", shadow_map=64).scattering, rel=1e-6)
+        # one pixel, and whatever the step it is the one that is evaluated, by the same samples where no polygon bounds them
+        unbounded = "lit_intervals:unbounded+weng2010"
+        coarse, whole = (draw(scene, unbounded, shadow_map=64, downsample=n).scattering for n in (step, 1))
+        assert coarse == pytest.approx(whole, rel=1e-6)
+        # half a step of 128 and a texel of 64; measured 0.4 %, and 31 % too bright where polygons are lost
+        assert frame.scattering == pytest.approx(whole, rel=0.02)
 
 
 def test_renderers_do_not_disturb_each_other(draw) -> None:
@@ -238,7 +243,7 @@ def test_shadow_map_finds_the_nearest_surface_in_every_direction(
             vec3 point = texelFetch(points, ivec2(gl_FragCoord.xy), 0).xyz;
             result = vec4(nearest_surface(light, point), tile_position(point - light.position));
         }"""
-    source = ShaderSource("<main>", {"TILES": tiles, "GREY": 1}, generated={"<main>": main})
+    source = ShaderSource("<main>", {"TILES": tiles, "DIRECTIONAL": 0}, generated={"<main>": main})
     program = compile_program(device.context, ShaderSource("fullscreen.vert.glsl"), source)
     set_uniforms(program, light_uniforms(scene, lamp, PictureTextures(device)) | shadow_map.bind(0) | {"points": 1})
     points.use(1)
@@ -291,7 +296,9 @@ def test_refusals() -> None:
 
 
 def test_a_model_refuses_a_phase_function_it_cannot_take(draw) -> None:
-    with pytest.raises(InputError, match="weng2010 takes the phase function isotropic, and the scene has hg"):
+    with pytest.raises(
+        InputError, match="one_ei takes the phase function isotropic or rayleigh or schlick, and the scene has hg"
+    ):
         draw(load("empty", size=(8, 8), phase="hg"), "Weng2010")
 
 

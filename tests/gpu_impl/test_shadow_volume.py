@@ -9,6 +9,7 @@ from obj_meshes import BOX, SHEETS, SUN, obj
 from scene_files import point, spot, write_scene
 
 from gpu_impl.camera_uniforms import camera_uniforms
+from gpu_impl.lattice import Lattice
 from gpu_impl.light_uniforms import light_defines, light_uniforms
 from gpu_impl.passes.shadow_volume import bind_polygons
 from gpu_impl.renderer import Renderer, _read
@@ -46,8 +47,12 @@ def regions(scene: Scene, downsample: int = 1, shadow_map: int = 512) -> list[np
                 generated={"<region>": REGION},
             )
             uniforms = camera_uniforms(scene.camera) | light_uniforms(scene, light, renderer._pictures)
-            uniforms |= shadow_map_.bind(unit=0) | view.gbuffer.bind(first_unit=1) | {"downsample": downsample}
-            set_uniforms(program, uniforms | bind_polygons(polygons, layer, scene.camera, downsample))
+            uniforms |= (
+                shadow_map_.bind(unit=0)
+                | view.gbuffer.bind(first_unit=1)
+                | Lattice.of(scene.camera, downsample).uniforms
+            )
+            set_uniforms(program, uniforms | bind_polygons(polygons, layer))
             target = renderer._lattice_texture(technique)
             device.fill(program, target)
             found.append(_read(target).astype(np.float64))
@@ -82,10 +87,7 @@ def checked(scene: Scene, downsample: int = 1, samples: int = 48) -> tuple[float
     """Assert that no dark point lies outside a region; the share of rays with one, and that of regions too long."""
     rng = np.random.default_rng(5)
     camera = scene.camera
-    y, x = (
-        np.minimum(np.arange(-(-n // downsample)) * downsample + downsample // 2, n - 1)
-        for n in (camera.height, camera.width)
-    )
+    y, x = (np.arange(min(downsample // 2, (n - 1) % downsample), n, downsample) for n in (camera.height, camera.width))
     origin, direction = (part[np.ix_(y, x)] for part in camera.rays()[:2])
     shadowed, vain, ends = 0.0, 0.0, 0
     for light, region in zip(scene.lights, regions(scene, downsample), strict=True):

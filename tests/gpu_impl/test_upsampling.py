@@ -43,7 +43,7 @@ def a_view(camera: Camera) -> np.ndarray:
 
 def evaluated(pixels: int, step: int) -> np.ndarray:
     """Which pixels of a row or column are."""
-    return np.minimum(np.arange(-(-pixels // step)) * step + step // 2, pixels - 1)
+    return np.arange(min(step // 2, (pixels - 1) % step), pixels, step)
 
 
 def upsampled(name: str, camera: Camera, seen: np.ndarray, lattice: np.ndarray, step: int) -> np.ndarray:
@@ -70,7 +70,7 @@ def twin(name: str, camera: Camera, seen: np.ndarray, lattice: np.ndarray, step:
     rows, columns = evaluated(camera.height, step), evaluated(camera.width, step)
     result = np.empty((camera.height, camera.width, 4))
     for y, x in np.ndindex(result.shape[:2]):
-        v, u = (y - step // 2) / step, (x - step // 2) / step
+        v, u = (y - rows[0]) / step, (x - columns[0]) / step
         below, right = v - np.floor(v), u - np.floor(u)
         near = np.array([(1 - below) * (1 - right), (1 - below) * right, below * (1 - right), below * right])
         i = np.clip(int(np.floor(v)) + np.array([0, 0, 1, 1]), 0, len(rows) - 1)

@@ -17,7 +17,7 @@ void main() {
     bool coplanar = true;
     vec3 point, normal;
     for (int i = 0; i < 4; ++i) {
-        ivec2 pixel = evaluated_pixel(corner_of(cell, i));
+        ivec2 pixel = pixel_of(corner_of(cell, i));
         Ray ray = camera_ray(pixel);
         distances[i] = distance_seen(pixel);
         if (i == 0) {

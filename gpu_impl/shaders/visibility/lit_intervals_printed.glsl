@@ -12,7 +12,6 @@
 #include "shadow_region.glsl"
 
 void visibility(Ray ray, Light light) {
-    // where the lattice's last pixel was pushed back into the image, the ray is that of the pixel beside it: as printed
     vec2 polygons = front_and_final();
     float front = polygons.x, final = polygons.y, surface = ray.t_max;
     bool enters = front < surface, was_lit = false;

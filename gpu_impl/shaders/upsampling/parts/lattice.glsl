@@ -1,20 +1,17 @@
-// The lattice grid/N: the fog is evaluated on every N-th pixel, in x and in y. An upsampling defines
+// What an upsampling knows of the lattice. It defines
 //     vec4 upsampled(ivec2 pixel)
 // the value at any pixel of the image.
 #include "camera_ray.glsl"
+#include "lattice.glsl"
 
 uniform sampler2D scattering;            // evaluated on every N-th pixel; interpolates, and ends in its border's values
-uniform int downsample;                  // N
 uniform sampler2D normal_and_distance;   // at full resolution; distance 0 where there is no surface
-
-// The pixel of the image that an evaluated one stands for; the last of a row or column is pushed back into the image.
-ivec2 evaluated_pixel(ivec2 at) { return min(at * downsample + downsample / 2, image_size - 1); }
 
 // A cell is the square between four evaluated pixels; the first column and row lie half outside the lattice.
 struct Place { ivec2 cell; vec2 fraction; };
 
 Place place_of(ivec2 pixel) {
-    vec2 at = (vec2(pixel) - float(downsample / 2)) / float(downsample), corner = floor(at);
+    vec2 at = vec2(pixel - first_pixel) / float(downsample), corner = floor(at);
     return Place(ivec2(corner) + 1, at - corner);
 }
 

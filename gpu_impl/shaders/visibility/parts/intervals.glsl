@@ -13,13 +13,17 @@ void report_intervals(Ray ray, Light light, vec2 range, vec2 region) {
     vec3 first = ray.o + (region.x + 0.5 * dt) * ray.d, stride = dt * ray.d;
     bool is_lit = before > 0.0;
     int i = 0;
-    do {
+    while (true) {
+        // each sample is looked up once: the one that ends a run is known when the next begins
         while (!is_lit && i < steps && in_shadow(light, first + float(i) * stride)) ++i;
         int begin = i;
+        if (!is_lit && i < steps) ++i;
         while (i < steps && !in_shadow(light, first + float(i) * stride)) ++i;
         // the length is added up, as float32 would lose it in a difference of the ends
         float dt_lit = (is_lit ? before : 0.0) + float(i - begin) * dt + (i == steps ? behind : 0.0);
         if (dt_lit > 0.0) lit(is_lit ? range.x : region.x + float(begin) * dt, dt_lit, 1.0);
         is_lit = false;
-    } while (i < steps);
+        if (i == steps) break;
+        ++i;
+    }
 }
