@@ -75,6 +75,12 @@ def techniques(
         typer.Option(help="Phase function; repeatable. By default isotropic and rayleigh.", show_default=False),
     ] = None,
     parameter: Parameters = None,
+    contender: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME", help="Row of the table beside the march; repeatable. By default all.", show_default=False
+        ),
+    ] = None,
     frames: Annotated[
         int, typer.Option(min=6, max=1000, help="Rounds that count, in each of which every technique draws a frame.")
     ] = 15,
@@ -92,10 +98,12 @@ def techniques(
     """
     from experiments.pages import prepare_page
     from experiments.technique_benchmark.contenders import SCENES as THESIS_SCENES
+    from experiments.technique_benchmark.contenders import chosen
     from experiments.technique_benchmark.report import run_benchmark
     from experiments.terminal import announce_scene
 
-    goal = Goal(rel_error)
+    # refused before the work
+    goal, contenders = Goal(rel_error), chosen(contender)
     if out:
         from experiments.technique_benchmark.page import TITLE
 
@@ -108,15 +116,16 @@ def techniques(
     for one in loaded:
         announce_scene(one)
     options = {
-        "size": f"{size[0]} {size[1]}",
+        "size": size,
         "phase": phases,
+        "contender": contender or [],
         "parameter": parameter or [],
         "frames": frames,
         "triangles": triangles,
         "rel-error": rel_error,
     }
     with terminated_cleanly():
-        run_benchmark(loaded, frames, goal, options, out)
+        run_benchmark(loaded, contenders, frames, goal, options, out)
 
 
 def _load(name: str, triangles: int | None, size: tuple[int, int], parameters: dict[str, str]) -> Scene:

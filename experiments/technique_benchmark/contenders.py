@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from gpu_impl.techniques import Technique, find_technique
+from scenes.errors import InputError
+from scenes.messages import readable
 
 STEPS = 64
 # as the published technique is drawn, all pixels evaluated
@@ -72,6 +75,25 @@ TABLE_5_1 = {"donut_dragon": (6, 23), "dragon": (12, 24), "yeahright": (6, 17), 
 SCENES = [*TABLE_5_1, "wire_mesh"]
 # what a fast row's error may be: of the median pixel with airlight, and at the 95th percentile
 ERROR_LIMITS = (0.05, 0.20)
+
+
+def chosen(names: Sequence[str] | None) -> tuple[Contender, ...]:
+    """The contenders of some names, and the baseline; all where none is named.
+
+    Raises
+    ------
+    InputError
+        A name is not known.
+    """
+    if not names:
+        return CONTENDERS
+    known = [one.name for one in CONTENDERS]
+    for name in names:
+        if name not in known:
+            raise InputError(f"There is no contender '{readable(name)}'; use one of {', '.join(known)}.")
+    # its samples are as dense as those of the bounded march
+    wanted = {BASELINE.name, *names, *([BOUNDED] if AS_DENSE in names else [])}
+    return tuple(one for one in CONTENDERS if one.name in wanted)
 
 
 def published_rate(scene: str, phase: str) -> int | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from experiments.metrics import Metrics, measure
-from experiments.technique_benchmark.contenders import AS_DENSE, BASELINE, BOUNDED, CONTENDERS, Contender
+from experiments.technique_benchmark.contenders import AS_DENSE, BASELINE, BOUNDED, Contender
 from experiments.technique_benchmark.intervals import Array
 from experiments.technique_benchmark.spacing import steps_as_dense
 from gpu_impl.device import Device, shared_device
@@ -76,7 +76,7 @@ def measure_scene(
     reference: Reference,
     rounds: int,
     tell: Callable[[str], None],
-    contenders: Sequence[Contender] = CONTENDERS,
+    contenders: Sequence[Contender],
 ) -> Result:
     """Measure every contender that can draw the scene; nothing else may run meanwhile.
 
@@ -85,6 +85,7 @@ def measure_scene(
     reference : Reference    of the scene, estimated before
     rounds : int             that count; one more is run before them
     tell : callable          told what is being done
+    contenders : the baseline among them
     """
     device = shared_device()
     found = {one.name: _prepared(one, scene) for one in contenders}

@@ -134,7 +134,13 @@ def command_line(results: Sequence[Result], options: Mapping[str, object], out: 
     words = ["airlight", "benchmark", "techniques", *ordered]
     for name, value in options.items():
         values = value if isinstance(value, list) else [value]
-        words += [word for one in values if one is not None for word in (f"--{name}", *str(one).split())]
+        # a tuple is one option's several words
+        words += [
+            str(word)
+            for one in values
+            if one is not None
+            for word in (f"--{name}", *(one if isinstance(one, tuple) else [one]))
+        ]
     return shlex.join([*words, "--out", str(out)])
 
 

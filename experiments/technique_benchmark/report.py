@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from experiments.console import console, notices, plain_table, say
-from experiments.technique_benchmark.contenders import published_rate
+from experiments.technique_benchmark.contenders import Contender, published_rate
 from experiments.technique_benchmark.measurement import Result, measure_scene
 from experiments.technique_benchmark.page import write_page
 from experiments.technique_benchmark.summary import fastest
@@ -26,7 +26,12 @@ NO_SHADER_CACHE = {"MESA_SHADER_CACHE_DISABLE": "true", "__GL_SHADER_DISK_CACHE"
 
 
 def run_benchmark(
-    scenes: Sequence[Scene], rounds: int, goal: Goal, options: Mapping[str, object], out: Path | None = None
+    scenes: Sequence[Scene],
+    contenders: Sequence[Contender],
+    rounds: int,
+    goal: Goal,
+    options: Mapping[str, object],
+    out: Path | None = None,
 ) -> list[Result]:
     """Estimate all references, then measure scene by scene; print a table, and write the page where asked to.
 
@@ -53,7 +58,7 @@ def run_benchmark(
             def tell(what: str, name: str = f"{scene.name}, {scene.phase.name}") -> None:
                 status.update(f"{name}: {what}")
 
-            results.append(measure_scene(scene, reference, rounds, tell))
+            results.append(measure_scene(scene, reference, rounds, tell, contenders))
     console.print(rates(results))
     if out:
         write_page(out, results, options)

@@ -71,6 +71,8 @@ def pair_rows(result: Result) -> list[Row]:
     """A row a pair that can be compared in this scene."""
     found = []
     for pair in PAIRS:
+        if not {pair.first, pair.second} <= result.contenders.keys():
+            continue
         first, second = (result.contenders[name] for name in (pair.first, pair.second))
         if first.refusal or second.refusal:
             continue
@@ -110,7 +112,7 @@ def told(row: Row) -> str:
 
 def fastest(result: Result) -> Measured | None:
     """The fast row of a scene: the fastest of `FAST_ROWS`, of those within `ERROR_LIMITS` where there are any."""
-    drawn = [one for name in FAST_ROWS if not (one := result.contenders[name]).refusal]
+    drawn = [one for name, one in result.contenders.items() if name in FAST_ROWS and not one.refusal]
     within = list(filter(is_within, drawn))
     return min(within or drawn, key=lambda one: float(np.median(one.milliseconds)), default=None)
 

@@ -20,10 +20,11 @@ from experiments.technique_benchmark.contenders import (
     CONTENDERS,
     FAST_ROWS,
     PAIRS,
+    chosen,
     published_rate,
 )
 from experiments.technique_benchmark.intervals import FEWEST_ROUNDS, median_interval
-from experiments.technique_benchmark.measurement import Measured, Result, measure_scene, time_in_rounds
+from experiments.technique_benchmark.measurement import Measured, Result, time_in_rounds
 from experiments.technique_benchmark.spacing import steps_as_dense
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.device import shared_device
@@ -212,17 +213,17 @@ def test_a_budget_decimates_files_for_both_renderers(tmp_path: Path, monkeypatch
 def test_a_scene_is_measured_and_written(airlight, monkeypatch, tmp_path: Path) -> None:
     # whatever runs after this in the process
     monkeypatch.setattr(report, "NO_SHADER_CACHE", {})
-    monkeypatch.setattr(report, "measure_scene", lambda *given: measure_scene(*given, FEW))
-    # the tables look all of them up
-    monkeypatch.setattr(summary, "PAIRS", ())
-    monkeypatch.setattr(summary, "FAST_ROWS", ("fast, quadrature",))
     out = tmp_path / "page"
+    chosen = ("--contender", "fast, quadrature", "--contender", "merged")
     words = ("half_plane", "--size", 24, 16, "--phase", "rayleigh", "--frames", 6, "--rel-error", 0.05, "--out", out)
-    result = airlight("benchmark", "techniques", *words)
+    result = airlight("benchmark", "techniques", *chosen, *words)
     assert result.code == 0, result.err
     text = (out / "README.md").read_text()
     assert text.startswith("# What the techniques cost\n")
-    command = f"benchmark techniques half_plane --size 24 16 --phase rayleigh --frames 6 --rel-error 0.05 --out {out}"
+    command = (
+        "benchmark techniques half_plane --size 24 16 --phase rayleigh --contender 'fast, quadrature' "
+        f"--contender merged --frames 6 --rel-error 0.05 --out {out}"
+    )
     assert command in text
     assert shared_device().info.renderer in text
     assert "wall clock around glFinish" in text or "GL_TIME_ELAPSED" in text
@@ -242,6 +243,17 @@ def test_a_scene_is_measured_and_written(airlight, monkeypatch, tmp_path: Path) 
     assert (int(rows["march"]["rays"]), int(rows["fast, quadrature"]["rays"])) == (24 * 16, 6 * 4)
     assert float(rows["march"]["storage_bytes"]) == 0 < float(rows["fast, quadrature"]["storage_bytes"])
     assert (out / "passes.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_unknown_contender_is_refused(airlight) -> None:
+    result = airlight("benchmark", "techniques", "sphere", "--contender", "slow")
+    assert result.code == 2
+    assert "There is no contender 'slow'; use one of march, fast" in result.err
+
+
+def test_what_is_as_dense_needs_what_it_is_as_dense_as() -> None:
+    assert [one.name for one in chosen([AS_DENSE])] == [BASELINE.name, BOUNDED, AS_DENSE]
+    assert chosen(None) == chosen([]) == CONTENDERS
 
 
 def test_another_page_is_not_overwritten(airlight, monkeypatch, tmp_path: Path) -> None:
