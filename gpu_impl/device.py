@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from gpu_impl.context import gl_info, shared_context
 from gpu_impl.shader_source import ShaderSource, compile_compute, compile_program
 
@@ -102,6 +104,12 @@ class Device:
         for program in self._programs.values():
             program.release()
         self._programs.clear()
+
+
+def read(texture: Any) -> np.ndarray:
+    """Copy a float32 texture to an array, (H, W, components)."""
+    width, height = texture.size
+    return np.frombuffer(texture.read(), np.float32).reshape(height, width, texture.components)
 
 
 @cache

@@ -7,9 +7,9 @@ import pytest
 from scene_files import point, sphere, write_scene
 
 from gpu_impl.airlight_models import QUADRATURE_NODES
-from gpu_impl.device import shared_device
+from gpu_impl.device import read, shared_device
 from gpu_impl.passes.scattering import COUNTERS
-from gpu_impl.renderer import Renderer, _read
+from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import find_technique
 from scenes.errors import InputError
 from scenes.loader import load
@@ -96,10 +96,10 @@ def test_the_counting_build_draws_the_same_bits(technique: str, sigma_t: str, tm
     scene = write_scene(tmp_path, shapes=sphere(0.3, 1.3, 0, 0.4), sigma_t=sigma_t, size=(24, 24))
     chosen = find_technique(technique, steps=STEPS, shadow_map=64)
     with Renderer(scene) as renderer:
-        view = renderer._see(chosen)
-        counts = renderer._lattice_texture(chosen)
-        normal, counting = (_read(renderer._scatter(chosen, view, target)) for target in (None, counts))
-        assert _read(counts)[..., 0].max() > 1
+        view = renderer.passes.see(chosen)
+        counts = renderer.passes.lattice_texture(chosen)
+        normal, counting = (read(renderer.passes.scatter(chosen, view, target)) for target in (None, counts))
+        assert read(counts)[..., 0].max() > 1
     shared_device().release_spare_textures()
     assert normal[..., :3].max() > 0
     np.testing.assert_array_equal(counting, normal)

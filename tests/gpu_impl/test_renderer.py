@@ -94,7 +94,7 @@ def test_any_size(size: tuple[int, int], step: int, draw) -> None:
     assert np.isfinite(frame.composite).all()
     assert (frame.scattering > 0).all()
     if size == (1, 1):
-        # one pixel, and whatever the step it is the one that is evaluated, by the same samples where no polygon bounds them
+        # one pixel, evaluated whatever the step; by the same samples where no polygon bounds them
         unbounded = "lit_intervals:unbounded+weng2010"
         coarse, whole = (draw(scene, unbounded, shadow_map=64, downsample=n).scattering for n in (step, 1))
         assert coarse == pytest.approx(whole, rel=1e-6)

@@ -9,10 +9,11 @@ from obj_meshes import BOX, SHEETS, SUN, obj
 from scene_files import point, spot, write_scene
 
 from gpu_impl.camera_uniforms import camera_uniforms
+from gpu_impl.device import read
 from gpu_impl.lattice import Lattice
 from gpu_impl.light_uniforms import light_defines, light_uniforms
 from gpu_impl.passes.shadow_volume import bind_polygons
-from gpu_impl.renderer import Renderer, _read
+from gpu_impl.renderer import Renderer
 from gpu_impl.shader_source import set_uniforms
 from gpu_impl.techniques import find_technique
 from scenes.model import Scene
@@ -38,24 +39,24 @@ def regions(scene: Scene, downsample: int = 1, shadow_map: int = 512) -> list[np
     technique = find_technique("lit_intervals+quadrature", downsample=downsample, shadow_map=shadow_map)
     found = []
     with Renderer(scene) as renderer:
-        device, view = renderer.device, renderer._see(technique)
-        polygons = renderer._shadow_polygons(technique, view)
-        for layer, (light, shadow_map_) in enumerate(zip(renderer._lights, view.shadow_maps, strict=True)):
+        device, view = renderer.device, renderer.passes.see(technique)
+        polygons = renderer.passes.shadow_polygons(technique, view)
+        for layer, (light, shadow_map_) in enumerate(zip(renderer.passes.lights, view.shadow_maps, strict=True)):
             program = device.program(
                 "<region>",
                 defines=light_defines(scene, light) | shadow_map_.defines | {"GREY": 1, "STEPS": 1},
                 generated={"<region>": REGION},
             )
-            uniforms = camera_uniforms(scene.camera) | light_uniforms(scene, light, renderer._pictures)
+            uniforms = camera_uniforms(scene.camera) | light_uniforms(scene, light, renderer.passes.pictures)
             uniforms |= (
                 shadow_map_.bind(unit=0)
                 | view.gbuffer.bind(first_unit=1)
                 | Lattice.of(scene.camera, downsample).uniforms
             )
             set_uniforms(program, uniforms | bind_polygons(polygons, layer))
-            target = renderer._lattice_texture(technique)
+            target = renderer.passes.lattice_texture(technique)
             device.fill(program, target)
-            found.append(_read(target).astype(np.float64))
+            found.append(read(target).astype(np.float64))
             target.release()
         polygons.release()
         view.give_back(device)

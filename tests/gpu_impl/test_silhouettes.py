@@ -33,8 +33,10 @@ def silhouette(scene: Scene) -> set[frozenset]:
     with Renderer(scene) as renderer:
         technique = find_technique("lit_intervals:printed+quadrature", steps=1, shadow_map=8)
         renderer.render(technique)
-        corners = np.frombuffer(renderer._adjacency.draw_call.read(), np.uint32)[0]
-        found = np.frombuffer(renderer._adjacency.silhouette.read(), np.uint32).reshape(-1, 4)[: corners // 6, :2]
+        corners = np.frombuffer(renderer.passes._adjacency.draw_call.read(), np.uint32)[0]
+        found = np.frombuffer(renderer.passes._adjacency.silhouette.read(), np.uint32).reshape(-1, 4)[
+            : corners // 6, :2
+        ]
     return {frozenset(map(tuple, vertices[pair].tolist())) for pair in found}
 
 
