@@ -73,13 +73,11 @@ class Technique:
             value = getattr(self, setting)
             # asked of a tuple, which takes what cannot be hashed too
             if value not in tuple(known):
-                what = {"airlight": "airlight model"}.get(setting, setting.replace("_", " "))
-                found = (
-                    f"{setting} is {value}"
-                    if setting == "downsample"
-                    else f"There is no {what} '{readable(str(value))}'"
-                )
-                raise InputError(f"{found}; use one of {', '.join(map(str, known))}.")
+                choices = ", ".join(map(str, known))
+                if setting == "downsample":
+                    raise InputError(f"downsample is {value}; use {choices}.")
+                what = "airlight model" if setting == "airlight" else setting.replace("_", " ")
+                raise InputError(f"There is no {what} '{readable(str(value))}'; use one of {choices}.")
 
     def check_scene(self, scene: Scene) -> None:
         """Raise InputError where the airlight model cannot take the scene's phase function or one of its lights."""
@@ -146,7 +144,7 @@ def find_technique(name: str, **settings: Any) -> Technique:
         technique = Technique(name, visibility, model, steps=CELL_STEPS)
     else:
         raise InputError(
-            f"There is no technique '{readable(name)}'; use one of {', '.join(TECHNIQUES)}, or a cell of the product "
+            f"There is no technique '{name}'; use one of {', '.join(TECHNIQUES)}, or a cell of the product "
             "such as lit_intervals+quadrature."
         )
     changed = replace(technique, **{key: value for key, value in settings.items() if value is not None})

@@ -45,7 +45,7 @@ SUITE = 'scenes = ["empty"]\nsize = [16, 16]\n[[techniques]]\nname = "Weng2010"\
         (["render", "empty", "--steps", "0", "--out", "a.exr"], "steps is 0; use 1 to"),
         (["render", "empty", "--shadow-map", "0", "--out", "a.exr"], "shadow_map is 0; use 1 to"),
         (["render", "empty", "--downsample", "3", "--out", "a.exr"], "downsample is 3; use 1, 2, 4, 8"),
-        (["render", "empty", *SMALL, "-p", "phase=rayleigh", "--out", "a.exr"], "takes the phase function isotropic"),
+        (["render", "empty", *SMALL, "-p", "phase=hg", "--out", "a.exr"], "takes the phase function isotropic"),
         (["render", "empty", "--out", "missing/a.exr"], "make it first"),
         (["render", "empty", "--out", "."], "is a folder; name a file in it"),
         (["render", "empty", "--out", ""], "is a folder; name a file in it"),
