@@ -41,9 +41,13 @@ def accuracy(
         prepare_page(out, TITLE)
     scenes = scene or list(SCENES)
     with terminated_cleanly(), notices.status("accuracy") as status:
-        rows = list(study(scenes, size, technique, status.update))
+        rows = []
+        for case in study(scenes, size, technique, status.update):
+            rows += case
+            # whoever stops the rest keeps what is measured
+            if out:
+                write_page(out, rows, technique, scenes)
     console.print(accuracy_table(judged(rows)))
     say(f"{verdict(rows)}.")
     if out:
-        write_page(out, rows, technique, scenes)
         say(f"Accuracy: {(out / 'README.md').resolve()}")

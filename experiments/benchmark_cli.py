@@ -10,6 +10,7 @@ import typer
 from experiments.options import SCENE_HELP, TYPER_STYLE, Parameters, parse_parameters
 from experiments.termination import terminated_cleanly
 from reference.goal import FEWEST_PASSES, Goal
+from scenes.errors import InputError
 
 if TYPE_CHECKING:
     from scenes.model import Scene
@@ -109,6 +110,8 @@ def techniques(
 
         prepare_page(out, TITLE)
     settings = parse_parameters(parameter)
+    if "phase" in settings:
+        raise InputError(f"-p phase={settings['phase']}: give it as --phase {settings['phase']}.")
     phases = phase or ["isotropic", "rayleigh"]
     loaded = [
         _load(name, triangles, size, {**settings, "phase": one}) for name in scene or THESIS_SCENES for one in phases

@@ -70,11 +70,17 @@ def _python() -> list[Finding]:
 
 
 def _gl() -> list[Finding]:
-    from gpu_impl.context import gl_info, shared_context
+    from gpu_impl.device import shared_device
+    from gpu_impl.passes.shadow_volume import check_polygons
 
-    info = gl_info(shared_context())
-    note = " (software: timings are wall clock)" if info.is_software else ""
-    return [Finding("OpenGL", "ok", f"{info.renderer}, {info.version}{note}")]
+    device = shared_device()
+    note = " (software: timings are wall clock)" if device.info.is_software else ""
+    found = [Finding("OpenGL", "ok", f"{device.info.renderer}, {device.info.version}{note}")]
+    try:
+        check_polygons(device)
+    except InputError as error:
+        return [*found, Finding("shadow polygons", "missing", "cannot be drawn", str(error))]
+    return [*found, Finding("shadow polygons", "ok", "can be drawn")]
 
 
 def _mitsuba() -> list[Finding]:

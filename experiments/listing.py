@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import fields
+
 from rich.table import Table
 
 from analytic import MODELS
 from experiments.suite import shipped as shipped_suites
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
-from gpu_impl.techniques import TECHNIQUES
+from gpu_impl.techniques import CHOICES, RANGES, SETTINGS, TECHNIQUES, Technique
 from gpu_impl.visibilities import VISIBILITIES
 from scenes.catalogue import FOLDER, shipped
 from scenes.meshes.files import available
@@ -33,9 +36,18 @@ def listing() -> list[Table]:
             ("name", "source", "phase functions"),
             [(name, model.citation, ", ".join(model.phases or ("any",))) for name, model in MODELS.items()],
         ),
+        _table("settings of a technique", ("name", "may be", "by default"), list(_settings())),
         _table("suites", ("name",), [(name,) for name in shipped_suites()]),
         _table("meshes", ("name", "from", "path"), [(m.name, m.origin, str(m.path)) for m in available()]),
     ]
+
+
+def _settings() -> Iterator[tuple[str, ...]]:
+    # visibility and airlight model have tables of their own
+    defaults = {field.name: field.default for field in fields(Technique)}
+    for name in SETTINGS:
+        choices = ", ".join(map(str, CHOICES[name])) if name in CHOICES else "{} to {}".format(*RANGES[name])
+        yield name, choices, str(defaults[name])
 
 
 def _table(title: str, headings: tuple[str, ...], rows: list[tuple[str, ...]]) -> Table:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -86,7 +86,7 @@ def run_suite(name: str, suite: Suite, parent: Path, watcher: Watcher) -> tuple[
             watcher.estimated(reference)
             with Renderer(scene) as renderer:
                 for technique in techniques:
-                    watcher.case(f"{scene.name}: {technique.name}", number, total)
+                    watcher.case(f"{scene.name}: {technique_label(technique.name, vars(technique))}", number, total)
                     frame = renderer.render(technique)
                     case = keep_case(folder, scene, frame, reference)
                     sheets.append(drawer.submit(write_sheet, *_sheet(folder, scene, frame, reference, case)))
@@ -125,16 +125,27 @@ def keep_case(folder: Path, scene: Scene, frame: Frame, reference: Reference) ->
     ]
 
 
+def changed_settings(name: str, given: Mapping[str, Any]) -> dict[str, str]:
+    """Those of the settings `given` that are not what the technique of this name has by itself, as text."""
+    own = find_technique(name)
+    return {setting: str(given[setting]) for setting in SETTINGS if str(given[setting]) != str(getattr(own, setting))}
+
+
+def technique_label(name: str, given: Mapping[str, Any]) -> str:
+    """Name of a technique and its changed settings, for people: "Nishita1987, steps 5"."""
+    changed = changed_settings(name, given)
+    return ", ".join([name, *(f"{setting} {value}" for setting, value in changed.items())])
+
+
 def case_name(scene: Scene, frame: Frame) -> str:
-    """Name of a case's files; settings that are not the technique's own are part of it."""
+    """Name of a case's files; settings that are not the technique's own are part of it.
+
+    A colon becomes a hyphen: FAT and NTFS have none in names, and scp takes what stands before one for a host.
+    """
     technique = frame.technique
-    own = find_technique(technique.name)
-    changed = [
-        f"-{setting}-{getattr(technique, setting)}"
-        for setting in SETTINGS
-        if getattr(technique, setting) != getattr(own, setting)
-    ]
-    return f"{scene.name}-{technique.name}{''.join(changed)}"
+    changed = changed_settings(technique.name, vars(technique))
+    settings = "".join(f"-{setting}-{value}" for setting, value in changed.items())
+    return f"{scene.name}-{technique.name.replace(':', '-')}{settings}"
 
 
 def write_tables(folder: Path, rows: list[Row]) -> None:
@@ -162,7 +173,8 @@ def _row(scene: Scene, frame: Frame, reference: Reference, layer: str, metrics: 
 
 def _sheet(folder: Path, scene: Scene, frame: Frame, reference: Reference, rows: list[Row]) -> tuple[Any, ...]:
     """Arguments of `write_sheet` for the scattering layer of a case."""
-    title = f"{scene.name}, {frame.technique.name}: scattering, {scene.camera.width} x {scene.camera.height}"
+    label = technique_label(frame.technique.name, vars(frame.technique))
+    title = f"{scene.name}, {label}: scattering, {scene.camera.width} x {scene.camera.height}"
     stand_ins = f"stand-in for {', '.join(scene.stand_ins)}" if scene.stand_ins else ""
     path = folder / f"{case_name(scene, frame)}.png"
     row = next(row for row in rows if row["layer"] == "scattering")

@@ -14,10 +14,10 @@ Steps = Annotated[int | None, typer.Option(metavar="S", help="Samples of the vis
 ShadowMapSize = Annotated[
     int | None, typer.Option("--shadow-map", metavar="R", help="Texels on a side of the shadow map.")
 ]
-Downsample = Annotated[int | None, typer.Option(metavar="N", help="Evaluate fog on every N-th pixel: 1, 2, 4 or 8.")]
-Upsample = Annotated[
-    str | None, typer.Option(metavar="U", help="What fills the pixels between: bilateral, nearest_depth or bilinear.")
+Downsample = Annotated[
+    int | None, typer.Option(metavar="N", help="Evaluate fog on every N-th pixel (`airlight list`).")
 ]
+Upsample = Annotated[str | None, typer.Option(metavar="U", help="What fills the pixels between (`airlight list`).")]
 SurfaceShadows = Annotated[
     str | None, typer.Option(metavar="KIND", help="Shadows on surfaces: hard, or soft (percentage-closer filtering).")
 ]

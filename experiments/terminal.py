@@ -11,7 +11,7 @@ from rich.table import Table
 from experiments.bars import Bars
 from experiments.console import plain_table, warn
 from experiments.metrics import Metrics
-from experiments.runner import Row, Watcher
+from experiments.runner import Row, Watcher, technique_label
 from gpu_impl.techniques import SETTINGS
 from reference.convergence import Progress as Convergence
 from reference.estimate import Reference
@@ -145,7 +145,7 @@ def results_table(rows: list[Row]) -> Table:
             continue
         table.add_row(
             row["scene"] + ("*" if row["stand_ins"] else ""),
-            row["technique"],
+            technique_label(row["technique"], row),
             f"{row['rel_50']:.3%}",
             f"{row['rel_95']:.3%}",
             f"{row['rel_99']:.3%}",

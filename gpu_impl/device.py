@@ -11,6 +11,9 @@ import numpy as np
 from gpu_impl.context import gl_info, shared_context
 from gpu_impl.shader_source import ShaderSource, compile_compute, compile_program
 
+# moderngl has no name for it
+DEPTH_CLAMP = 0x864F
+
 
 class Device:
     """Compiles programs and runs full-screen passes.
@@ -97,6 +100,13 @@ class Device:
         self.context.disable(self.context.BLEND)
         array.release()
         target.release()
+
+    def begin_drawing(self) -> None:
+        """Set what passes change and change back to how they expect it: one may have been interrupted in between."""
+        context = self.context
+        context.disable(context.BLEND | context.DEPTH_TEST | context.CULL_FACE | context.PROGRAM_POINT_SIZE)
+        context.disable_direct(DEPTH_CLAMP)
+        context.blend_equation, context.front_face = context.FUNC_ADD, "ccw"
 
     def release(self) -> None:
         """Release programs and spare textures."""

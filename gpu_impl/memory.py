@@ -5,6 +5,7 @@ Weng 2010 claims "neither pre-computation nor storage". `footprint` measures bot
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -18,18 +19,10 @@ from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import Technique
 from scenes.model import Scene
 
-# what of moderngl.Context allocates memory that grows with a scene or a picture
-ALLOCATORS = (
-    "buffer",
-    "texture",
-    "texture_array",
-    "texture_cube",
-    "depth_texture",
-    "renderbuffer",
-    "depth_renderbuffer",
-)
-# bytes of a component of each of moderngl's types; a depth buffer has 24 bits, padded to 4 bytes, and "f4" here
-COMPONENT_BYTES = {"f1": 1, "f2": 2, "f4": 4, "i1": 1, "i2": 2, "i4": 4, "u1": 1, "u2": 2, "u4": 4}
+# what the passes call of moderngl.Context that allocates memory
+ALLOCATORS = ("buffer", "texture", "depth_renderbuffer")
+# bytes of a component of each type of theirs; a depth buffer has 24 bits, padded to 4 bytes, and is "f4" to moderngl
+COMPONENT_BYTES = {"f1": 1, "f4": 4, "u4": 4}
 # pixels on a side of the picture whose set-up is timed
 SMALL = 64
 
@@ -64,11 +57,10 @@ class Tally:
 
 
 def size_in_bytes(allocated: Any) -> int:
-    """Size of a moderngl buffer, texture, texture array or renderbuffer [byte], as it was asked for."""
+    """Size of a moderngl buffer, texture or renderbuffer [byte], as it was asked for."""
     if isinstance(allocated.size, int):
         return allocated.size
-    faces = 6 if type(allocated).__name__ == "TextureCube" else 1
-    return int(np.prod(allocated.size)) * allocated.components * COMPONENT_BYTES[allocated.dtype] * faces
+    return int(np.prod(allocated.size)) * allocated.components * COMPONENT_BYTES[allocated.dtype]
 
 
 @contextmanager
@@ -101,6 +93,7 @@ class Footprint:
     Attributes
     ----------
     scene_bytes : int              meshes and pictures, which any technique needs
+    scene_milliseconds : float     making the meshes ready, for any technique: the search for closed ones, and uploads
     storage_bytes : int            what the technique keeps from one frame to the next
     frame_bytes : int              the most that a frame holds beside both while it is drawn
     compile_milliseconds : float   compiling its shaders: once a program, for all scenes
@@ -108,6 +101,7 @@ class Footprint:
     """
 
     scene_bytes: int
+    scene_milliseconds: float
     storage_bytes: int
     frame_bytes: int
     compile_milliseconds: float
@@ -134,9 +128,12 @@ def footprint(scene: Scene, technique: Technique, device: Device, frames: int = 
     # set-up is the same for any picture, and is not lost in the frames' own time where those are short
     small = replace(scene, camera=replace(scene.camera, width=SMALL, height=SMALL))
     with tally(device.context) as counted:
-        first, later = [], []
+        ready, first, later = [], [], []
         for _ in range(1 + frames):
+            begin = time.perf_counter()
             with Renderer(small, fresh) as renderer:
+                device.context.finish()
+                ready.append(1e3 * (time.perf_counter() - begin))
                 renderer.frame_time(before, 0)
                 # a frame's textures wait for the next one without holding anything
                 fresh.release_spare_textures()
@@ -154,6 +151,7 @@ def footprint(scene: Scene, technique: Technique, device: Device, frames: int = 
     fresh.release()
     return Footprint(
         scene_bytes,
+        float(np.median(ready)),
         storage_bytes,
         frame_bytes,
         compile_milliseconds=max(first[0] - float(np.median(first[1:])), 0.0),

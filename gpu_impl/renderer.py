@@ -14,9 +14,11 @@ from gpu_impl.frame_passes import FramePasses, View, view_key
 from gpu_impl.motion import moved
 from gpu_impl.passes.scattering import COUNTERS
 from gpu_impl.passes.shadow_map import check_map_size
+from gpu_impl.passes.shadow_volume import check_polygons
 from gpu_impl.passes.tone_mapping import tone_map
 from gpu_impl.techniques import Technique
 from gpu_impl.timing import NO_CLOCK, Clock
+from gpu_impl.visibilities import VISIBILITIES
 from scenes.errors import InputError
 from scenes.model import Scene
 
@@ -68,8 +70,8 @@ class Renderer:
             self.device.give_back(*layers)
         if not (np.isfinite(surface).all() and np.isfinite(scattering).all()):
             raise InputError(
-                f"{technique.name} draws {self.scene.path} with pixels that are not finite: bring its intensities, "
-                "lengths and coefficients nearer to 1."
+                f"{technique.name} draws {self.scene.path} with pixels that are not finite: use {technique.visibility}+"
+                "quadrature, or bring the scene's intensities, lengths and coefficients nearer to 1."
             )
         far = self.scene.camera.rays()[2]
         return Frame(
@@ -155,6 +157,9 @@ class Renderer:
         technique.check_scene(self.scene)
         for light in self.scene.lights:
             check_map_size(self.device, light, technique.shadow_map)
+        if VISIBILITIES[technique.visibility].polygons:
+            check_polygons(self.device)
+        self.device.begin_drawing()
         try:
             yield
         except moderngl.Error as error:

@@ -97,6 +97,16 @@ class Technique:
                     f"has a {light.kind} light{where}: use {self.visibility}+quadrature."
                 )
 
+    def notices(self, scene: Scene) -> list[str]:
+        """What the technique does to a scene that it can draw, and that nobody would expect."""
+        soft = any(light.beam_width < light.cutoff_angle or light.texture for light in scene.lights)
+        if AIRLIGHT_MODELS[self.airlight].any_light or not soft:
+            return []
+        return [
+            f"The airlight model {self.airlight} takes a spot's intensity as constant over a lit piece, and the "
+            f"scene's changes with the angle: {self.visibility}+quadrature follows it."
+        ]
+
 
 # the settings that a technique may be given, by name
 SETTINGS = tuple(field.name for field in fields(Technique) if field.default is not MISSING)

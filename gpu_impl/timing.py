@@ -48,12 +48,14 @@ class PassClock:
         self._context = device.context
         self.method = WALL_CLOCK if device.info.is_software else TIMER_QUERIES
         self._measured: list[tuple[str, Any]] = []
+        # read, and free for the next pass: moderngl cannot release a query
+        self._spare: list[Any] = []
 
     @contextmanager
     def time_pass(self, name: str) -> Iterator[None]:
         """Stand around one pass, or around a part of it; passes do not nest."""
         if self.method == TIMER_QUERIES:
-            query = self._context.query(time=True)
+            query = self._spare.pop() if self._spare else self._context.query(time=True)
             with query:
                 yield
             self._measured.append((name, query))
@@ -68,7 +70,11 @@ class PassClock:
         """Return the time of each pass that ran since the last call [ms], several runs of one pass added up."""
         passes: dict[str, float] = {}
         for name, measured in self._measured:
-            elapsed = 1e-6 * measured.elapsed if self.method == TIMER_QUERIES else 1e3 * measured
+            if self.method == TIMER_QUERIES:
+                elapsed = 1e-6 * measured.elapsed
+                self._spare.append(measured)
+            else:
+                elapsed = 1e3 * measured
             passes[name] = passes.get(name, 0.0) + elapsed
         self._measured.clear()
         return passes

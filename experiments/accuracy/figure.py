@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from scenes.replacing import replacing
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Okabe and Ito's colours, which colour-blind people can tell apart
+# Okabe and Ito's colours, which colour-blind people can tell apart; an eighth scene has the first one's
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 
 
@@ -44,7 +45,7 @@ def draw_figure(path: Path, rows: Sequence[Row], below: str) -> None:
 
 def _curves(panel: Axes, rows: Sequence[Row], along: str, fixed: str, value: int) -> None:
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
-    for scene, colour in zip(scenes, COLOURS, strict=False):
+    for scene, colour in zip(scenes, cycle(COLOURS), strict=False):
         mine = sorted(
             (int(row[along]), row["rel_50"], row["rel_95"])
             for row in rows

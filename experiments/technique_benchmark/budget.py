@@ -6,6 +6,7 @@ import hashlib
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from scenes.meshes.files import VARIABLE, MeshFile, sha256
 from scenes.meshes.polygons import as_triangles, read_polygons
 from scenes.meshes.steps import decimate
 from scenes.meshes.triangles import ply_bytes
-from scenes.model import Scene
+from scenes.model import Mesh, Scene
 from scenes.replacing import CACHE_CURE, make_folder, replacing
 
 # a closed surface has no fewer
@@ -34,7 +35,8 @@ def load_within(name: str | Path, triangles: int, size: tuple[int, int] | None =
 
     Each mesh keeps the same share of its triangles (Garland and Heckbert 1997, see `scenes.meshes.steps.decimate`). The
     decimated files are kept in the user's cache folder, where the scene finds them by AIRLIGHT_MESH_DIR's rules: both
-    renderers get them as they get any mesh. Analytic shapes stay as they are, and so does a scene within the budget.
+    renderers get them as they get any mesh; a decimated stand-in is still called one. Analytic shapes stay as they are,
+    and so does a scene within the budget.
 
     Raises
     ------
@@ -60,7 +62,13 @@ def load_within(name: str | Path, triangles: int, size: tuple[int, int] | None =
                 f"{file.path} stays as it is: only PLY files that a scene names without a folder can be decimated."
             )
     with _searched_first(_decimated(list(files.values()), share)):
-        return load(name, size, **parameters)
+        coarse = load(name, size, **parameters)
+    return replace(coarse, meshes=tuple(_with_origin(mesh, files) for mesh in coarse.meshes))
+
+
+def _with_origin(mesh: Mesh, files: dict[str, MeshFile]) -> Mesh:
+    """Say of a decimated file where the whole one came from."""
+    return replace(mesh, file=replace(mesh.file, origin=files[mesh.file.name].origin)) if mesh.file else mesh
 
 
 def _decimated(files: list[MeshFile], share: float) -> Path:

@@ -6,13 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from experiments.provenance import scene_file
 from gpu_impl.techniques import Technique, find_technique
 from scenes.errors import InputError
 from scenes.messages import readable
+from scenes.model import Scene
 
 STEPS = 64
 # as the published technique is drawn, all pixels evaluated
 FULL = {"steps": STEPS, "shadow_map": 1024, "downsample": 1}
+# the 95th percentile of yeahright's error (isotropic, 512 x 512) is 9.9 % with 512 texels and 10.2 % with 256
 FAST = {"steps": STEPS, "shadow_map": 512, "downsample": 4}
 
 
@@ -33,7 +36,7 @@ BASELINE = Contender("march", "Nishita1987")
 CONTENDERS = (
     BASELINE,
     Contender("fast", "Weng2010", FAST),
-    Contender("fast, quadrature", "lit_intervals+quadrature", FAST),
+    Contender("fast quadrature", "lit_intervals+quadrature", FAST),
     Contender("repaired", "Weng2010"),
     Contender("merged", "lit_intervals+weng2010"),
     Contender("four Ei", "Weng2010:four-ei"),
@@ -43,13 +46,13 @@ CONTENDERS = (
     Contender("minimax", "Weng2010:minimax"),
     Contender("as printed", "Weng2010:printed"),
     Contender("quadrature", "lit_intervals+quadrature"),
-    Contender("whole ray, as many samples", "lit_intervals:unbounded+quadrature"),
+    Contender("whole ray with as many samples", "lit_intervals:unbounded+quadrature"),
     # it takes as many samples as give the spacing of "quadrature", scene by scene: see measurement.py
-    Contender("whole ray, as dense", "lit_intervals:unbounded+quadrature"),
+    Contender("whole ray as dense", "lit_intervals:unbounded+quadrature"),
     Contender("map in a buffer", "lit_intervals+quadrature", FULL | {"shadow_storage": "buffer"}),
 )
 FAST_ROWS = tuple(one.name for one in CONTENDERS if one.settings is FAST)
-AS_DENSE, BOUNDED = "whole ray, as dense", "quadrature"
+AS_DENSE, BOUNDED = "whole ray as dense", "quadrature"
 
 
 @dataclass(frozen=True)
@@ -65,8 +68,8 @@ PAIRS = (
     Pair("four Ei", "three Ei", "section 4.4: three evaluations of Ei for four"),
     Pair("three Ei", "two Ei", "section 4.4: two for three where the phase function is isotropic"),
     Pair("two Ei", "merged", "ours: the exponents merged into Ei"),
-    Pair("whole ray, as many samples", "quadrature", "Algorithm 4.2: samples in the shadow region only, as many"),
-    Pair("whole ray, as dense", "quadrature", "Algorithm 4.2: samples in the shadow region only, as dense"),
+    Pair("whole ray with as many samples", "quadrature", "Algorithm 4.2: samples in the shadow region only, as many"),
+    Pair("whole ray as dense", "quadrature", "Algorithm 4.2: samples in the shadow region only, as dense"),
     Pair("quadrature", "map in a buffer", "chapter 4: the shadow map in a buffer rather than a texture"),
 )
 
@@ -96,7 +99,7 @@ def chosen(names: Sequence[str] | None) -> tuple[Contender, ...]:
     return tuple(one for one in CONTENDERS if one.name in wanted)
 
 
-def published_rate(scene: str, phase: str) -> int | None:
-    """Frames a second that Table 5.1 has for a scene; None where it has none."""
-    anisotropic, isotropic = TABLE_5_1.get(scene, (None, None))
-    return isotropic if phase == "isotropic" else anisotropic
+def published_rate(scene: Scene) -> int | None:
+    """Frames a second that Table 5.1 has for a shipped scene; None where it has none, and for other people's scenes."""
+    anisotropic, isotropic = TABLE_5_1.get(scene_file(scene), (None, None))
+    return isotropic if scene.phase.name == "isotropic" else anisotropic

@@ -129,8 +129,8 @@ def time_in_rounds(
 ) -> dict[str, dict]:
     """Time all techniques once a round, in an order drawn anew, so that whatever slows the machine down meets them all.
 
-    Each draws the same frame of the same motion twice: with nothing but the whole timed, and with a clock at each pass.
-    The first round, in which shaders are compiled, does not count.
+    Each draws the same frame of the same motion twice: with nothing but the whole timed, and with a clock at each pass,
+    which comes first in every other round. The first round, in which shaders are compiled, does not count.
 
     Returns
     -------
@@ -146,9 +146,12 @@ def time_in_rounds(
         for number in range(rounds + 1):
             tell(f"round {number} of {rounds}")
             for name in order.permutation(list(techniques)).tolist():
-                plain[name].append(renderer.frame_time(techniques[name], number))
-                clocked[name].append(renderer.frame_time(techniques[name], number, clock))
-                passes[name].append(clock.milliseconds())
+                for with_clock in (False, True) if number % 2 == 0 else (True, False):
+                    if with_clock:
+                        clocked[name].append(renderer.frame_time(techniques[name], number, clock))
+                        passes[name].append(clock.milliseconds())
+                    else:
+                        plain[name].append(renderer.frame_time(techniques[name], number))
     return {
         name: {
             "milliseconds": np.array(plain[name][1:]),

@@ -11,10 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from experiments.console import console, notices, plain_table, say
-from experiments.technique_benchmark.contenders import Contender, published_rate
+from experiments.technique_benchmark.contenders import ERROR_LIMITS, Contender, published_rate
 from experiments.technique_benchmark.measurement import Result, measure_scene
 from experiments.technique_benchmark.page import write_page
-from experiments.technique_benchmark.summary import fastest
+from experiments.technique_benchmark.summary import fastest, is_within
 from experiments.technique_benchmark.tables import title
 from experiments.terminal import announce_reference
 from reference.estimate import estimate_reference
@@ -34,6 +34,8 @@ def run_benchmark(
     out: Path | None = None,
 ) -> list[Result]:
     """Estimate all references, then measure scene by scene; print a table, and write the page where asked to.
+
+    The page is written after each scene, so that whoever stops the rest keeps what is measured.
 
     Parameters
     ----------
@@ -59,22 +61,25 @@ def run_benchmark(
                 status.update(f"{name}: {what}")
 
             results.append(measure_scene(scene, reference, rounds, tell, contenders))
+            if out:
+                write_page(out, results, scenes, options)
     console.print(rates(results))
     if out:
-        write_page(out, results, options)
         say(f"Benchmark: {(out / 'README.md').resolve()}")
     return results
 
 
 def rates(results: Sequence[Result]) -> Table:
-    """Time and error of every contender; a star for the fast row of a scene."""
+    """Time and error of every contender; a star for the fast row of a scene where it keeps the limits."""
     table = plain_table(Text("Milliseconds a frame, and the error of the scattering layer"))
     table.add_column("scene", overflow="fold")
     table.add_column("contender", overflow="fold")
     for heading in ("ms", "of the march", "frames/s", "median", "95 %"):
         table.add_column(heading, justify="right", no_wrap=True)
+    starred = False
     for result in results:
         best = fastest(result)
+        starred |= best is not None and is_within(best)
         for name, one in result.contenders.items():
             if one.refusal or not one.metrics:
                 continue
@@ -82,13 +87,15 @@ def rates(results: Sequence[Result]) -> Table:
             errors = (one.metrics.rel_50, one.metrics.rel_95)
             table.add_row(
                 title(result),
-                Text(f"{name}{' *' if one is best else ''}"),
+                Text(f"{name}{' *' if one is best and is_within(one) else ''}"),
                 f"{median:.1f}",
                 f"{float(np.median(result.ratios(name))):.3f}",
                 f"{1e3 / median:.1f}",
                 *("" if error is None else f"{error:.2%}" for error in errors),
             )
-        if published := published_rate(result.scene.name, result.scene.phase.name):
+        if published := published_rate(result.scene):
             table.add_row(title(result), "Table 5.1, on other hardware", "", "", str(published), "", "")
-    table.caption = f"* the fastest within the limits of error. Passes by {results[0].clock}."
+    limits = f"{ERROR_LIMITS[0]:.0%} (median) and {ERROR_LIMITS[1]:.0%} (95th percentile)"
+    star = f"* the fast row, off by at most {limits}. " if starred else ""
+    table.caption = f"{star}Passes by {results[0].clock}."
     return table

@@ -17,6 +17,8 @@ from gpu_impl.device import shared_device
 from gpu_impl.timing import PASSES
 
 Row = dict[str, Any]
+# as `COUNTERS` calls them
+EI = "exponential_integrals"
 
 
 def rows(result: Result) -> list[Row]:
@@ -49,7 +51,7 @@ def _numbers(result: Result, one: Measured) -> Row:
         "milliseconds_50": middle,
         "milliseconds_75": high,
         "frames_per_second": 1e3 / middle,
-        "published_frames_per_second": published_rate(result.scene.name, result.scene.phase.name),
+        "published_frames_per_second": published_rate(result.scene),
         "over_march": float(np.median(ratios)),
         "over_march_low": least,
         "over_march_high": most,
@@ -89,6 +91,9 @@ def pair_rows(result: Result) -> list[Row]:
                 "claim": pair.claim,
                 "first_steps": first.technique.steps,
                 "second_steps": second.technique.steps,
+                "first_exponential_integrals": first.counts[EI],
+                "second_exponential_integrals": second.counts[EI],
+                "same_work": _same_work(first, second),
                 "rounds": ratios.size,
                 "ratio": float(np.median(ratios)),
                 "ratio_low": low,
@@ -101,8 +106,18 @@ def pair_rows(result: Result) -> list[Row]:
     return found
 
 
+def _same_work(first: Measured, second: Measured) -> bool:
+    """Whether two airlight models counted the same in a scene, so that nothing is compared.
+
+    Where no lit piece holds the foot of the light's perpendicular on its ray, three and four evaluations of Ei are two.
+    """
+    return first.technique.airlight != second.technique.airlight and first.counts == second.counts
+
+
 def told(row: Row) -> str:
     """What a pair's interval says, in words."""
+    if row["same_work"]:
+        return "same work"
     if row["ratio_low"] > 1:
         return "the second is faster"
     if row["ratio_high"] < 1:

@@ -28,7 +28,7 @@ def title(result: Result) -> str:
 
 
 def rates_table(results: Sequence[Result]) -> str:
-    """Frames a second of the fast rows beside Table 5.1."""
+    """Frames a second of the fast rows beside Table 5.1; empty where there is none."""
     headings = (
         "scene and phase function",
         "triangles",
@@ -42,7 +42,7 @@ def rates_table(results: Sequence[Result]) -> str:
     )
     lines = []
     for result in results:
-        published = published_rate(result.scene.name, result.scene.phase.name)
+        published = published_rate(result.scene)
         if not (one := fastest(result)) or not one.metrics:
             continue
         median = float(np.median(one.milliseconds))
@@ -58,11 +58,11 @@ def rates_table(results: Sequence[Result]) -> str:
                 "yes" if is_within(one) else "no",
             ]
         )
-    return table(headings, lines)
+    return table(headings, lines) if lines else ""
 
 
 def passes_table(results: Sequence[Result]) -> str:
-    """Milliseconds of each pass of the fast rows, and of a frame with and without the clock."""
+    """Milliseconds of each pass of the fast rows, and of a frame with and without the clock; empty where is none."""
     headings = ("scene and phase function", *PASSES, "sum", "frame, clocked", "frame")
     lines = []
     for result in results:
@@ -71,33 +71,45 @@ def passes_table(results: Sequence[Result]) -> str:
         passes = [float(np.median(one.passes.get(name, [0.0]))) for name in PASSES]
         numbers = [*passes, sum(passes), float(np.median(one.clocked)), float(np.median(one.milliseconds))]
         lines.append([title(result), *map(_short, numbers)])
-    return table(headings, lines)
+    return table(headings, lines) if lines else ""
 
 
 def pairs_table(results: Sequence[Result]) -> str:
-    """The paired timings."""
-    headings = ("pair", "scene and phase function", "frame", "scattering pass", "samples", "told by the frames")
-    pairs = [(pair.first, pair.second) for pair in PAIRS]
+    """The paired timings below what is claimed; empty where no pair was drawn."""
+    headings = (
+        "pair",
+        "scene and phase function",
+        "frame",
+        "scattering pass",
+        "samples, first / second",
+        "Ei a ray, first / second",
+        "told by the frames",
+    )
     found = [(result, row) for result in results for row in pair_rows(result)]
+    if not found:
+        return ""
+    there = {(row["first"], row["second"]) for _, row in found}
+    pairs = [pair for pair in PAIRS if (pair.first, pair.second) in there]
     lines = [
         [
-            f"{first} / {second}",
+            f"{pair.first} / {pair.second}",
             title(result),
             _interval(row, "ratio"),
             _interval(row, "scattering_ratio"),
             f"{row['first_steps']} / {row['second_steps']}",
+            f"{row['first_exponential_integrals']:.4g} / {row['second_exponential_integrals']:.4g}",
             told(row),
         ]
-        for first, second in pairs
+        for pair in pairs
         for result, row in found
-        if (row["first"], row["second"]) == (first, second)
+        if (row["first"], row["second"]) == (pair.first, pair.second)
     ]
-    claims = [f"- {pair.first} / {pair.second}: {pair.claim}." for pair in PAIRS]
+    claims = [f"- {pair.first} / {pair.second}: {pair.claim}." for pair in pairs]
     return "\n".join([*claims, "", table(headings, lines)])
 
 
 def contenders_table(result: Result) -> str:
-    """All contenders of a scene; below, why others refuse it."""
+    """All contenders of a scene; above, what it costs with any of them, below, why others refuse it."""
     headings = (
         "contender",
         "ms",
@@ -113,9 +125,13 @@ def contenders_table(result: Result) -> str:
         "compile [ms]",
         "set-up [ms]",
     )
-    lines = [_line(row) for row in rows(result) if not row["refusal"]]
+    drawn = [row for row in rows(result) if not row["refusal"]]
+    lines = [_line(row) for row in drawn]
+    ready = float(np.median([row["scene_milliseconds"] for row in drawn]))
+    held = drawn[0]["scene_bytes"] / MEGABYTE
+    scene = f"Meshes and pictures: {_short(held)} MB, meshes made ready in {_short(ready)} ms."
     refused = [f"- {one.contender.name}: {one.refusal}" for one in result.contenders.values() if one.refusal]
-    return "\n".join([table(headings, lines), *(["", "Not drawn:", "", *refused] if refused else [])])
+    return "\n".join([scene, "", table(headings, lines), *(["", "Not drawn:", "", *refused] if refused else [])])
 
 
 def _line(row: Row) -> list[str]:

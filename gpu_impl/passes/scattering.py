@@ -48,7 +48,7 @@ def add_scattering(
 
     Parameters
     ----------
-    polygons : what `render_shadow_polygons` drew, for a visibility that asks for it; this light's are in `layer`
+    polygons : what `render_shadow_polygons` drew, where the visibility asks for it; this light's are in `layer`
     counts : RGBA32F    of the target's size, a channel for each of `COUNTERS`; None where nothing is counted
     """
     grey = np.ptp(np.broadcast_to(scene.medium.sigma_t, 3)) == 0

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gpu_impl.device import Device
+from gpu_impl.device import DEPTH_CLAMP, Device
 from gpu_impl.geometry import Geometry
 from gpu_impl.matrices import orthographic_matrix, projection_matrix, view_matrix
 from scenes.errors import InputError
@@ -17,7 +17,6 @@ from scenes.model import Light
 WIDEST_FLAT_MAP = np.radians(60)
 # no depth buffer is used and DEPTH_CLAMP keeps what lies outside, so that only their ratio has to be harmless
 NEAR, FAR = 1.0, 2.0
-DEPTH_CLAMP = 0x864F
 # binding of a map that stands in a buffer; those from 3 on are others'
 SHADOW_BUFFER = 2
 # (forward, up) of a cube's faces +x -x +y -y +z -z, in the order of tile_position() in shadow_lookup.glsl

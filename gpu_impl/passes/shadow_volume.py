@@ -19,6 +19,7 @@ from gpu_impl.passes.shadow_map import ShadowMap
 from gpu_impl.shader_source import set_uniforms
 from gpu_impl.silhouettes import Adjacency
 from gpu_impl.textures import PictureTextures
+from scenes.errors import InputError
 from scenes.model import Array, Camera, Light, Scene
 
 # what a ray without a shadow polygon holds
@@ -27,6 +28,20 @@ NO_CROSSING = 3e38
 POLYGONS_UNIT = 9
 # invocations of a work group of silhouette.comp.glsl
 GROUP = 128
+# work groups along one axis that every OpenGL takes; more are silently none
+MOST_GROUPS = 65535
+# storage blocks that polygon.vert.glsl declares; OpenGL 4.3 promises a vertex shader none
+VERTEX_BLOCKS = 3
+
+
+def check_polygons(device: Device) -> None:
+    """Raise InputError where this OpenGL cannot draw shadow polygons."""
+    blocks = device.context.info["GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS"]
+    if blocks < VERTEX_BLOCKS:
+        raise InputError(
+            f"Shadow polygons need {VERTEX_BLOCKS} storage blocks in a vertex shader, and this OpenGL has {blocks} "
+            "(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS): use a cell without them, such as lit_intervals:unbounded+one_ei."
+        )
 
 
 def render_shadow_polygons(
@@ -55,9 +70,10 @@ def render_shadow_polygons(
         unit]; NO_CROSSING in both where there is none.
     """
     context, camera = device.context, scene.camera
-    polygons, limits = device.texture((*lattice.size, len(lights)), 2), device.texture(lattice.size, 4)
-    target = context.framebuffer(color_attachments=[polygons])
-    target.clear(NO_CROSSING, NO_CROSSING)
+    polygons = device.texture((*lattice.size, len(lights)), 2)
+    # drawn one by one and copied: to draw into a layer takes more than OpenGL 4.3's core has in a vertex shader
+    crossings, limits = device.texture(lattice.size, 2), device.texture(lattice.size, 4)
+    transfer = device.buffer(2 * 4 * lattice.size[0] * lattice.size[1])
     pixels = camera_uniforms(camera) | lattice.uniforms
     drawn = pixels | {"limits": 0, "world_to_lattice": world_to_lattice(camera, lattice)}
     adjacency.bind()
@@ -72,11 +88,14 @@ def render_shadow_polygons(
         context.memory_barrier()
         gather = device.compute("shadow_volume/silhouette.comp.glsl", defines)
         set_uniforms(gather, uniforms | {"edge_count": adjacency.edge_count})
-        gather.run(-(-adjacency.edge_count // GROUP))
+        groups = -(-adjacency.edge_count // GROUP)
+        gather.run(min(groups, MOST_GROUPS), -(-groups // MOST_GROUPS))
         context.memory_barrier()
         program = device.program("shadow_volume/polygon.frag.glsl", "shadow_volume/polygon.vert.glsl", defines)
-        set_uniforms(program, drawn | uniforms | {"layer": layer})
+        set_uniforms(program, drawn | uniforms)
         array = context.vertex_array(program, [])
+        target = context.framebuffer(color_attachments=[crossings])
+        target.clear(NO_CROSSING, NO_CROSSING)
         limits.use(0)
         target.use()
         context.enable(context.BLEND)
@@ -85,13 +104,15 @@ def render_shadow_polygons(
         context.blend_equation = context.FUNC_ADD
         context.disable(context.BLEND)
         array.release()
-    target.release()
-    device.give_back(limits)
+        target.release()
+        crossings.read_into(transfer)
+        polygons.write(transfer, viewport=(0, 0, layer, *lattice.size, 1))
+    device.give_back(crossings, limits, transfer)
     return polygons
 
 
 def bind_polygons(polygons: Any, layer: int) -> dict[str, Any]:
-    """Bind what `render_shadow_polygons` drew and give the uniforms of shadow_region.glsl."""
+    """Bind what `render_shadow_polygons` drew and give the uniforms of shadow_region.glsl for one light."""
     polygons.use(POLYGONS_UNIT)
     return {"shadow_polygons": POLYGONS_UNIT, "polygon_layer": layer}
 

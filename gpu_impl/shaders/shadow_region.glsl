@@ -16,10 +16,11 @@ vec2 front_and_final() {
     return vec2(found.x, -found.y);
 }
 
-// Whether a part of the ray lies in the dark: whether one of the four texels around its middle says so. Saying so in vain
-// costs samples and nothing else.
-bool is_dark(Ray ray, Light light, float begin, float end) {
+// Whether a part of the ray lies in the dark: whether its middle does, or, with care, whether one of the four texels around
+// its middle says so, which is for those who take samples there: in vain it costs them samples and nothing else.
+bool is_dark(Ray ray, Light light, float begin, float end, bool care) {
     vec3 point = ray.o + 0.5 * (begin + end) * ray.d;
+    if (!care) return in_shadow(light, point);
     vec3 position = map_position(light, point);
     if (position.z < 0.0) return false;
     float here = distance_from(light, point);
@@ -34,9 +35,9 @@ bool is_dark(Ray ray, Light light, float begin, float end) {
 // The shadow region within `range` of the ray, (begin, end): Algorithm 4.2 of Weng 2010, repaired. Before and behind it the
 // ray is lit. It begins with the range where the eye is in a shadow volume, and ends with it where the end is dark; empty,
 // at the range's end, where the ray meets no shadow.
-vec2 shadow_region(Ray ray, Light light, vec2 range) {
+vec2 shadow_region(Ray ray, Light light, vec2 range, bool care) {
     vec2 polygons = front_and_final();
-    if (polygons.x > polygons.y) return is_dark(ray, light, range.x, range.y) ? range : range.yy;
-    return vec2(is_dark(ray, light, range.x, polygons.x) ? range.x : polygons.x,
-                is_dark(ray, light, polygons.y, range.y) ? range.y : polygons.y);
+    if (polygons.x > polygons.y) return is_dark(ray, light, range.x, range.y, care) ? range : range.yy;
+    return vec2(is_dark(ray, light, range.x, polygons.x, care) ? range.x : polygons.x,
+                is_dark(ray, light, polygons.y, range.y, care) ? range.y : polygons.y);
 }

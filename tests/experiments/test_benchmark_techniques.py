@@ -1,18 +1,17 @@
-"""`airlight benchmark techniques`: its statistics, its rounds, its pairs, its budget of triangles and its page."""
+"""`airlight benchmark techniques`: its rounds, its pairs and its page."""
 
 from __future__ import annotations
 
 import csv
-import os
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from scene_files import sphere, write_scene
 
 from experiments.metrics import measure
-from experiments.technique_benchmark import budget, measurement, report, summary, tables
+from experiments.technique_benchmark import measurement, report, summary, tables
 from experiments.technique_benchmark.contenders import (
     AS_DENSE,
     BASELINE,
@@ -23,43 +22,18 @@ from experiments.technique_benchmark.contenders import (
     chosen,
     published_rate,
 )
-from experiments.technique_benchmark.intervals import FEWEST_ROUNDS, median_interval
 from experiments.technique_benchmark.measurement import Measured, Result, time_in_rounds
-from experiments.technique_benchmark.spacing import steps_as_dense
-from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.device import shared_device
 from gpu_impl.memory import Footprint
 from gpu_impl.passes.scattering import COUNTERS
-from gpu_impl.renderer import Renderer
-from gpu_impl.techniques import find_technique
-from gpu_impl.visibilities import VISIBILITIES
 from reference.estimate import estimate_reference
 from reference.goal import Goal
-from scenes.errors import InputError
+from scenes.catalogue import FOLDER
 from scenes.loader import load
+from scenes.model import Scene
 
-RNG = np.random.default_rng(6)
 # one of each kind, so that the whole takes seconds
-FEW = tuple(one for one in CONTENDERS if one.name in ("march", "fast, quadrature", "merged"))
-
-
-def test_the_interval_holds_the_median_as_often_as_it_says() -> None:
-    # log-normal: nothing about it is symmetric, and its median is 1
-    for n in (6, 15, 40):
-        found = [median_interval(np.exp(RNG.normal(size=n))) for _ in range(1000)]
-        held = np.mean([low <= 1 <= high for low, high in found])
-        # 95 % at least, and no more than counts in whole samples make it (97 % for 6 of them)
-        # and three standard errors of a thousand of them
-        assert 0.93 < held < 0.99, n
-    assert median_interval(np.arange(6.0)) == (0.0, 5.0)
-    # of 15 the fourth from either end: fewer than four on one side happen 1.8 % of the time each
-    assert median_interval(RNG.permutation(np.arange(15.0))) == (3.0, 11.0)
-
-
-def test_too_few_rounds_are_refused(airlight) -> None:
-    with pytest.raises(ValueError, match="values must be 6 or more"):
-        median_interval(np.ones(FEWEST_ROUNDS - 1))
-    assert airlight("benchmark", "techniques", "sphere", "--frames", FEWEST_ROUNDS - 1).code == 2
+FEW = tuple(one for one in CONTENDERS if one.name in ("march", "fast quadrature", "merged"))
 
 
 def test_every_contender_exists_and_names_are_unique() -> None:
@@ -75,10 +49,15 @@ def test_every_contender_exists_and_names_are_unique() -> None:
         assert len(different) == 1, pair
 
 
-def test_published_rates_are_those_of_table_5_1() -> None:
-    assert published_rate("yeahright", "isotropic") == 17
-    assert published_rate("yeahright", "rayleigh") == published_rate("yeahright", "hg") == 6
-    assert published_rate("wire_mesh", "isotropic") is None
+def test_published_rates_are_those_of_table_5_1(tmp_path: Path) -> None:
+    isotropic, rayleigh, hg = (
+        load("donut_dragon", size=(2, 2), phase=phase) for phase in ("isotropic", "rayleigh", "hg")
+    )
+    assert published_rate(isotropic) == 23
+    assert published_rate(rayleigh) == published_rate(hg) == 6
+    assert published_rate(load("sphere", size=(2, 2))) is None
+    # somebody else's scene of the same name is not the thesis's
+    assert published_rate(replace(isotropic, path=tmp_path / "donut_dragon.xml")) is None
 
 
 def test_rounds_run_each_once_in_an_order_of_their_own(monkeypatch) -> None:
@@ -106,7 +85,8 @@ def test_rounds_run_each_once_in_an_order_of_their_own(monkeypatch) -> None:
     rounds = [order[8 * n : 8 * n + 8] for n in range(9)]
     for number, one in enumerate(rounds):
         assert {frame for _, frame, _ in one} == {number}
-        # without a clock, then with one
+        # without a clock, then with one, and in every other round the other way round
+        assert {clocked for _, _, clocked in one[::2]} == {number % 2 == 1}
         assert [name for name, _, clocked in one if clocked] == [name for name, _, clocked in one if not clocked]
         assert sorted(name for name, _, clocked in one if clocked) == sorted(names)
     assert len({tuple(name for name, _, _ in one) for one in rounds}) > 5
@@ -129,7 +109,7 @@ def made_up(times: dict[str, np.ndarray], errors: dict[str, tuple[float, float]]
             one,
             technique,
             metrics=replace(measure(reference, reference), rel_50=median, rel_95=worst),
-            footprint=Footprint(10, 2_000_000, 30, 4.0, 5.0),
+            footprint=Footprint(10, 7.0, 2_000_000, 30, 4.0, 5.0),
             counts=dict.fromkeys(COUNTERS, 1.5),
             rays=16,
             milliseconds=times[one.name],
@@ -158,70 +138,62 @@ def test_ratios_are_of_one_round() -> None:
     assert summary.told(pair) == "no difference found"
     assert summary.told(pair | {"ratio_low": 1.01}) == "the second is faster"
     assert summary.told(pair | {"ratio_high": 0.99}) == "the first is faster"
+    # the same counts and the same model: the map's place is what differs
+    assert not pair["same_work"]
+
+
+def test_pairs_of_models_that_count_the_same_compare_nothing() -> None:
+    rounds = np.ones(6)
+    result = made_up({"march": rounds, "four Ei": 2 * rounds, "three Ei": rounds, "two Ei": rounds})
+    assert [summary.told(row) for row in summary.pair_rows(result)] == ["same work", "same work"]
+    fewer = replace(result.contenders["three Ei"], counts=result.contenders["three Ei"].counts | {summary.EI: 1.25})
+    result.contenders["three Ei"] = fewer
+    rows = summary.pair_rows(result)
+    assert [summary.told(row) for row in rows] == ["the second is faster", "no difference found"]
+    assert (rows[0]["first_exponential_integrals"], rows[0]["second_exponential_integrals"]) == (1.5, 1.25)
+    text = tables.pairs_table([result])
+    assert "| 1.5 / 1.25 | the second is faster |" in text
+    # claims are those of the pairs that are there
+    assert text.count("\n- ") + text.startswith("- ") == 2
+    assert tables.pairs_table([made_up({"march": rounds})]) == ""
 
 
 def test_the_fast_row_is_the_fastest_within_the_limits() -> None:
     rounds = np.ones(6)
-    times = {"march": 9 * rounds, "fast": 2 * rounds, "fast, quadrature": 3 * rounds, "quadrature": rounds}
+    times = {"march": 9 * rounds, "fast": 2 * rounds, "fast quadrature": 3 * rounds, "quadrature": rounds}
     one = summary.fastest(made_up(times))
     assert one is not None
     assert one.contender.name == "fast"
     for errors in ((0.051, 0.02), (0.01, 0.21)):
         result = made_up(times, {"fast": errors})
-        assert summary.fastest(result) is result.contenders["fast, quadrature"]
+        assert summary.fastest(result) is result.contenders["fast quadrature"]
         assert "yes" in tables.rates_table([result])
     # where none is, the page says so
-    result = made_up(times, {"fast": (0.1, 0.1), "fast, quadrature": (0.1, 0.1)})
+    result = made_up(times, {"fast": (0.1, 0.1), "fast quadrature": (0.1, 0.1)})
     assert summary.fastest(result) is result.contenders["fast"]
     assert "| no |" in tables.rates_table([result])
+    # nor does it get the terminal's star
+    assert not any("*" in name for name in names_in_terminal(result))
+    assert [name for name in names_in_terminal(made_up(times)) if "*" in name] == ["fast *"]
+    assert tables.rates_table([made_up({"march": rounds})]) == tables.passes_table([made_up({"march": rounds})]) == ""
 
 
-def test_as_dense_is_the_length_of_rays_over_their_regions(tmp_path: Path) -> None:
-    bounded = find_technique("lit_intervals+quadrature", steps=16, shadow_map=256)
-    before = set(AIRLIGHT_MODELS), set(VISIBILITIES)
-    with Renderer(write_scene(tmp_path, shapes=sphere(0.3, 1.3, 0, 0.4), size=(24, 24))) as renderer:
-        dense = steps_as_dense(renderer, bounded)
-        assert steps_as_dense(renderer, replace(bounded, steps=32)) == pytest.approx(2 * dense, abs=1)
-    # rays of some 25 units, of which a ball's shadow takes two or three
-    assert 5 * 16 < dense < 30 * 16
-    with Renderer(load("empty", size=(8, 8))) as renderer:
-        assert steps_as_dense(renderer, bounded) == 16
-    assert (set(AIRLIGHT_MODELS), set(VISIBILITIES)) == before
-
-
-def test_a_budget_decimates_files_for_both_renderers(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    whole = load("wire_mesh", size=(8, 8), phase="rayleigh")
-    count = budget.triangle_count(whole)
-    meshes = os.environ.get("AIRLIGHT_MESH_DIR")
-    coarse = budget.load_within("wire_mesh", 20_000, size=(8, 8), phase="rayleigh")
-    assert count > 100_000
-    assert 0.9 * 20_000 < budget.triangle_count(coarse) <= 20_000
-    assert coarse.digest != whole.digest
-    assert coarse.phase.name == "rayleigh"
-    assert os.environ.get("AIRLIGHT_MESH_DIR") == meshes
-    # the shape is the same
-    for before, after in zip(whole.meshes, coarse.meshes, strict=True):
-        np.testing.assert_allclose(after.vertices.min(axis=0), before.vertices.min(axis=0), atol=0.05)
-        np.testing.assert_allclose(after.vertices.max(axis=0), before.vertices.max(axis=0), atol=0.05)
-    # within the budget nothing happens
-    assert budget.load_within("wire_mesh", count, size=(8, 8), phase="rayleigh").digest == whole.digest
-    with pytest.raises(InputError, match="in no mesh file"):
-        budget.load_within("sphere", 100, size=(8, 8))
+def names_in_terminal(result: Result) -> list[str]:
+    return [str(name) for name in report.rates([result]).columns[1].cells]
 
 
 def test_a_scene_is_measured_and_written(airlight, monkeypatch, tmp_path: Path) -> None:
     # whatever runs after this in the process
     monkeypatch.setattr(report, "NO_SHADER_CACHE", {})
     out = tmp_path / "page"
-    chosen = ("--contender", "fast, quadrature", "--contender", "merged")
+    chosen = ("--contender", "fast quadrature", "--contender", "merged")
     words = ("half_plane", "--size", 24, 16, "--phase", "rayleigh", "--frames", 6, "--rel-error", 0.05, "--out", out)
     result = airlight("benchmark", "techniques", *chosen, *words)
     assert result.code == 0, result.err
     text = (out / "README.md").read_text()
     assert text.startswith("# What the techniques cost\n")
     command = (
-        "benchmark techniques half_plane --size 24 16 --phase rayleigh --contender 'fast, quadrature' "
+        "benchmark techniques half_plane --size 24 16 --phase rayleigh --contender 'fast quadrature' "
         f"--contender merged --frames 6 --rel-error 0.05 --out {out}"
     )
     assert command in text
@@ -232,7 +204,7 @@ def test_a_scene_is_measured_and_written(airlight, monkeypatch, tmp_path: Path) 
     assert list(rows) == [one.name for one in FEW]
     assert rows["merged"]["refusal"]
     assert rows["merged"]["milliseconds_50"] == ""
-    for name in ("march", "fast, quadrature"):
+    for name in ("march", "fast quadrature"):
         row = rows[name]
         assert 0 < float(row["milliseconds_25"]) <= float(row["milliseconds_50"]) <= float(row["milliseconds_75"])
         assert float(row["over_march_low"]) <= float(row["over_march"]) <= float(row["over_march_high"])
@@ -240,9 +212,53 @@ def test_a_scene_is_measured_and_written(airlight, monkeypatch, tmp_path: Path) 
         assert float(row["error_rel_95"]) < 1
     assert rows["march"]["over_march"] == "1.0"
     # every fourth pixel in x and y
-    assert (int(rows["march"]["rays"]), int(rows["fast, quadrature"]["rays"])) == (24 * 16, 6 * 4)
-    assert float(rows["march"]["storage_bytes"]) == 0 < float(rows["fast, quadrature"]["storage_bytes"])
+    assert (int(rows["march"]["rays"]), int(rows["fast quadrature"]["rays"])) == (24 * 16, 6 * 4)
+    assert float(rows["march"]["storage_bytes"]) == 0 < float(rows["fast quadrature"]["storage_bytes"])
     assert (out / "passes.png").read_bytes().startswith(b"\x89PNG")
+    # what is not there is not talked of
+    assert "## Pass by pass" in text
+    assert "Table 5.1" in text
+    assert "in pairs" not in text
+    assert not (out / "pairs.csv").exists()
+    assert "So far" not in text
+    assert "decimated" not in text
+
+
+def test_what_is_measured_is_kept_when_the_rest_is_stopped(airlight, monkeypatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(report, "NO_SHADER_CACHE", {})
+    first = made_up({"march": np.ones(6), "two Ei": np.ones(6), "merged": np.ones(6)})
+
+    def measure_one(scene: Scene, *_: object) -> Result:
+        if scene.phase.name == "rayleigh":
+            raise KeyboardInterrupt
+        return replace(first, scene=scene)
+
+    monkeypatch.setattr(report, "estimate_reference", lambda *_: first.reference)
+    monkeypatch.setattr(report, "measure_scene", measure_one)
+    path = tmp_path / "mine.xml"
+    shutil.copy(FOLDER / "sphere.xml", path)
+    shutil.copytree(FOLDER / "phase", tmp_path / "phase")
+    words = ("benchmark", "techniques", "mine.xml", "--size", 4, 4, "--triangles", 300_000, "--out", "page")
+    # Ctrl-C's code
+    assert airlight(*words).code == 130
+    text = (tmp_path / "page" / "README.md").read_text()
+    assert "So far 1 of 2 cases are measured." in text
+    # the command names the file whatever folder it is run in, and all that was asked for
+    assert f"airlight benchmark techniques {path} --size 4 4 --phase isotropic --phase rayleigh" in text
+    assert "decimated to 300,000 triangles" in text
+    assert "- two Ei / merged: " in text
+    assert "- four Ei / three Ei" not in text
+    assert "Of 2 intervals of 95%" in text
+    assert "MB, meshes made ready in 7 ms." in text
+    # no fast row was drawn
+    assert "Table 5.1" not in text
+    assert "## Pass by pass" not in text
+
+
+def test_the_phase_function_is_given_once(airlight) -> None:
+    result = airlight("benchmark", "techniques", "sphere", "-p", "phase=hg")
+    assert result.code == 2
+    assert result.err.strip() == "airlight: -p phase=hg: give it as --phase hg."
 
 
 def test_an_unknown_contender_is_refused(airlight) -> None:

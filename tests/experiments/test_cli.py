@@ -18,7 +18,8 @@ from flat_exr import picture
 
 from experiments import cli
 from experiments.exr import read_exr, write_exr
-from gpu_impl.techniques import Technique
+from gpu_impl.device import shared_device
+from gpu_impl.techniques import CHOICES, RANGES, Technique
 
 COMMANDS = ["doctor", "list", "render", "reference", "compare", "run", "audit", "atlas", "quadrature", "spectra"]
 EXECUTABLE = Path(sys.executable).parent / "airlight"
@@ -40,6 +41,22 @@ def test_list_names_what_there_is(airlight) -> None:
     assert result.code == 0
     for name in ("donut_dragon", "Weng2010", "lit_intervals", "quadrature", "weng2010:printed", "quick", "torus.ply"):
         assert name in result.out
+    for name, known in CHOICES.items():
+        assert name in result.out or name == "airlight"
+        assert all(str(choice) in result.out for choice in known)
+    assert all(name in result.out and str(most) in result.out for name, (_, most) in RANGES.items())
+
+
+def test_doctor_says_that_shadow_polygons_cannot_be_drawn(airlight, monkeypatch: pytest.MonkeyPatch) -> None:
+    for slow in ("_mitsuba", "_meshes"):
+        monkeypatch.setattr(f"experiments.doctor.{slow}", list)
+    assert airlight("doctor").code == 0
+    monkeypatch.setitem(shared_device().context.info, "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS", 1)
+    result = airlight("doctor")
+    assert result.code == 1
+    said = " ".join(result.out.replace("│", " ").split())
+    assert "shadow polygons" in said
+    assert "lit_intervals:unb" in said
 
 
 def test_render_reference_and_compare(airlight) -> None:

@@ -17,6 +17,7 @@ from experiments.exr import read_exr
 from experiments.pictures import LAYERS
 from experiments.runner import Row, Watcher, run_suite
 from experiments.suite import Suite
+from experiments.terminal import results_table
 from reference import cache, estimate
 from scenes.model import Scene
 
@@ -107,6 +108,11 @@ def test_more_steps_are_closer(run: tuple[list[Row], Path, Notes]) -> None:
     assert errors["64"] < errors["5"]
     # the closed form has no error here but float32's and the reference's noise
     assert errors["128"] < 0.01
+
+
+def test_the_table_tells_two_settings_of_a_technique_apart(run: tuple[list[Row], Path, Notes]) -> None:
+    labels = list(results_table(run[0]).columns[1].cells)
+    assert labels == ["Weng2010", "Nishita1987, steps 5", "Nishita1987"]
 
 
 def test_the_watcher_hears_of_every_case(run: tuple[list[Row], Path, Notes]) -> None:

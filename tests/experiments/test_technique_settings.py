@@ -5,10 +5,10 @@ from __future__ import annotations
 import inspect
 
 import airlight
-from experiments.cli import render
-from experiments.runner import case_name
+from experiments.render_cli import render
+from experiments.runner import case_name, technique_label
 from experiments.suite import TechniqueChoice
-from gpu_impl.techniques import CHOICES, RANGES, SETTINGS
+from gpu_impl.techniques import CHOICES, RANGES, SETTINGS, find_technique
 
 
 def test_every_setting_is_named_or_a_number() -> None:
@@ -30,3 +30,17 @@ def test_a_case_is_called_after_the_settings_that_are_not_its_techniques_own() -
     assert case_name(scene, frame) == "empty-Weng2010-steps-5-shadow_map-8-upsample-bilinear-composition-printed"
     cell = airlight.render(scene, "Weng2010", airlight="quadrature", shadow_map=8)
     assert case_name(scene, cell) == "empty-lit_intervals+quadrature-shadow_map-8"
+
+
+def test_names_of_files_have_no_colon() -> None:
+    scene = airlight.load("empty", size=(2, 2))
+    assert case_name(scene, airlight.render(scene, "Weng2010:two-ei", steps=5)) == "empty-Weng2010-two-ei-steps-5"
+
+
+def test_a_label_says_which_settings_are_not_the_techniques_own() -> None:
+    own = find_technique("Weng2010")
+    assert technique_label(own.name, vars(own)) == "Weng2010"
+    changed = vars(find_technique("Weng2010", steps=5, upsample="bilinear"))
+    assert technique_label("Weng2010", changed) == "Weng2010, steps 5, upsample bilinear"
+    # the rows of a table hold text
+    assert technique_label("Weng2010", {key: str(value) for key, value in changed.items()}).endswith("bilinear")

@@ -12,6 +12,8 @@ from scenes.loader import load
 
 QUADRATURE = "lit_intervals:unbounded+quadrature"
 BOUNDED = "lit_intervals+quadrature"
+# samples and texels, each twice as fine as the one before
+REFINED = (64, 256), (128, 512), (256, 1024)
 
 
 @pytest.fixture(scope="module")
@@ -45,16 +47,15 @@ def test_lit_intervals_converge_to_the_exact_shadow(parameters: dict, draw) -> N
     scene = load("sphere", size=(64, 64), **parameters)
     truth = SphereScene(scene).scattering()
     errors = []
-    for steps, shadow_map in ((64, 256), (128, 512), (256, 1024), (512, 2048)):
+    for steps, shadow_map in REFINED:
         image = draw(scene, QUADRATURE, steps=steps, shadow_map=shadow_map).scattering
         error = relative(image, truth)
         # most rays meet no shadow; measured 2.2e-7 (isotropic), 4.4e-7 (hg)
         assert np.median(error) < 2e-6
         errors.append(np.percentile(error, 95))
         assert image.mean() == pytest.approx(truth.mean(), rel=3e-4)
-    # measured 1.2e-2, 6.0e-3, 3.1e-3, 1.6e-3 (isotropic): first order, as the ends of an interval are off by up to half
-    # a step
-    assert errors[-1] < 2.5e-3
+    # measured 1.2e-2, 6.0e-3, 3.1e-3 (isotropic): first order, as the ends of an interval are off by up to half a step
+    assert errors[-1] < 5e-3
     for coarse, fine in itertools.pairwise(errors):
         assert fine < 0.7 * coarse
 
@@ -63,13 +64,13 @@ def test_shadow_polygons_put_ends_where_they_are(exact: SphereScene, draw) -> No
     """Where one shadow is all that a ray meets, its ends are the polygons' own, however few the samples."""
     truth = exact.scattering()
     errors = []
-    for steps, shadow_map in ((64, 256), (128, 512), (256, 1024), (512, 2048)):
+    for steps, shadow_map in REFINED:
         error = relative(draw(exact.scene, BOUNDED, steps=steps, shadow_map=shadow_map).scattering, truth)
-        # the tessellated sphere's silhouette; measured 2.7e-5 to 3.5e-5, without polygons 1.2e-2 to 1.6e-3
+        # the tessellated sphere's silhouette; measured 2.7e-5 to 3.5e-5, without polygons 1.2e-2 to 3.1e-3
         assert np.percentile(error, 95) < 1e-4
         errors.append(np.percentile(error, 99))
-    # measured 4.0e-3, 2.2e-3, 1.1e-3, 5.1e-4: first order, where the end of a ray lies in the dark or near to it
-    assert errors[-1] < 1e-3
+    # measured 4.0e-3, 2.2e-3, 1.1e-3: first order, where the end of a ray lies in the dark or near to it
+    assert errors[-1] < 2e-3
     for coarse, fine in itertools.pairwise(errors):
         assert fine < 0.7 * coarse
 

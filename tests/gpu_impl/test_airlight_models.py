@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from shaded_pieces import brightness, pieces, shade, shader, twin, worst_rounding
+from shaded_pieces import DEFINES, MAIN, brightness, pieces, shade, shader, twin, worst_rounding
 
 from analytic import MODELS, phase
 from analytic.phase import Phase
 from experiments.atlas.errors import relative_error
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
+from gpu_impl.context import shared_context
+from gpu_impl.device import Device
 from gpu_impl.shader_source import SHADERS
 from gpu_impl.techniques import find_technique
 from scenes.errors import InputError
@@ -106,6 +108,16 @@ def test_exponential_integrals_are_counted(name: str, function: str) -> None:
     # far behind the light the print's w cancels to 0, where Ei has a limit and is not evaluated
     whole = u_b < (1000 if name == "weng2010:printed" else np.inf)
     assert (counted == np.array(COUNTS[name, function])[side])[whole].all()
+
+
+def test_no_two_of_four_ei_are_one_number_to_the_compiler() -> None:
+    model, device = AIRLIGHT_MODELS["weng2010:four-ei"], Device(shared_context())
+    program = device.program(
+        "<main>", defines=DEFINES, includes={"<airlight>": model.source}, generated={"<main>": MAIN}
+    )
+    # what it folds is no uniform any more
+    assert (program["v_h"].value, program["w_h"].value) == (1.0, -1.0)
+    device.release()
 
 
 MUTATIONS = [

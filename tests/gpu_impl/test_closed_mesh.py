@@ -25,8 +25,9 @@ def moved(mesh: trimesh.Trimesh, x: float) -> trimesh.Trimesh:
     return trimesh.Trimesh(mesh.vertices + np.array([x, 0, 0]), mesh.faces, process=False)
 
 
-BALL = trimesh.creation.icosphere(2)
-TORUS = trimesh.creation.torus(2, 0.5)
+# each with more triangles than `WORTH_IT`
+BALL = trimesh.creation.icosphere(5)
+TORUS = trimesh.creation.torus(2, 0.5, major_sections=128, minor_sections=64)
 
 
 @pytest.mark.parametrize("mesh", [BALL, TORUS, trimesh.util.concatenate([BALL, moved(TORUS, 5)])])
@@ -45,9 +46,16 @@ def test_meshes_whose_triangles_may_be_seen_from_either_side() -> None:
     assert side(trimesh.Trimesh(BALL.vertices, one_wrong, process=False)) == 0
     # closed each, and inside out the one to the other
     assert side(trimesh.util.concatenate([BALL, moved(flipped(BALL), 5)])) == 0
+    # hollow: the inner side of the wall is inside out by itself
+    assert (
+        side(trimesh.util.concatenate([BALL, flipped(trimesh.Trimesh(BALL.vertices / 2, BALL.faces, process=False))]))
+        == 0
+    )
     # each triangle twice: every edge has four
     assert side(trimesh.Trimesh(BALL.vertices, np.tile(BALL.faces, (2, 1)), process=False)) == 0
     assert outward_side(np.zeros((0, 3), np.float32), np.zeros((0, 3), np.uint32)) == 0
+    # so few that it does not pay, and may pass through themselves unnoticed
+    assert side(trimesh.creation.icosphere(2)) == 0
 
 
 def test_vertices_that_no_triangle_has_do_not_matter() -> None:

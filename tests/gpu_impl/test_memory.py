@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from scene_files import sphere, write_scene
 
+from gpu_impl import memory
 from gpu_impl.context import create_context
 from gpu_impl.device import shared_device
 from gpu_impl.memory import ALLOCATORS, footprint, tally
 from gpu_impl.renderer import Renderer
-from gpu_impl.techniques import find_technique
+from gpu_impl.techniques import Technique, find_technique
+from gpu_impl.timing import NO_CLOCK, Clock
 
 
 def test_the_tally_counts_bytes_until_they_are_released() -> None:
@@ -17,11 +21,11 @@ def test_the_tally_counts_bytes_until_they_are_released() -> None:
         buffer = context.buffer(reserve=100)
         texture = context.texture((7, 5), 4, dtype="f4")
         assert counted.held == 100 + 7 * 5 * 4 * 4
-        layers = context.texture_array((4, 3, 2), 2, dtype="f2")
+        display = context.texture((4, 3), 2, dtype="f1")
         depth = context.depth_renderbuffer((8, 8))
-        most = 100 + 560 + 4 * 3 * 2 * 2 * 2 + 8 * 8 * 4
+        most = 100 + 560 + 4 * 3 * 2 + 8 * 8 * 4
         assert counted.held == most
-        for one in (buffer, layers, depth):
+        for one in (buffer, display, depth):
             one.release()
         assert counted.held == 560
         assert counted.peak() == most
@@ -59,9 +63,32 @@ def test_the_footprint_of_a_march_and_of_shadow_polygons(tmp_path) -> None:
     assert bounded.storage_bytes >= 1.5 * len(mesh.faces) * 4 * 4
     # the first and the last shadow polygon of each pixel
     assert bounded.frame_bytes >= march.frame_bytes + 32 * 24 * 2 * 4
-    for found in (march, bounded):
-        assert found.compile_milliseconds >= 0
-        assert found.setup_milliseconds >= 0
+
+
+def test_compiling_and_set_up_are_what_first_frames_take_beyond_later_ones(tmp_path, monkeypatch) -> None:
+    class Slow(Renderer):
+        """A renderer in which compiling takes 100 ms, set-up 30 and a frame 5."""
+
+        compiled: ClassVar[set[str]] = set()
+
+        def __init__(self, *settings: object) -> None:
+            super().__init__(*settings)
+            self.ready: set[str] = set()
+
+        def frame_time(self, technique: Technique, number: int, clock: Clock = NO_CLOCK) -> float:
+            super().frame_time(technique, number, clock)
+            name = technique.name
+            took = 5.0 + 30.0 * (name not in self.ready) + 100.0 * (name not in self.compiled)
+            self.ready.add(name)
+            self.compiled.add(name)
+            return took
+
+    monkeypatch.setattr(memory, "Renderer", Slow)
+    scene = write_scene(tmp_path, shapes=sphere(0.3, 1.3, 0, 0.4), size=(8, 8))
+    found = footprint(scene, find_technique("uniform_march+riemann", steps=4, shadow_map=16), shared_device())
+    assert found.compile_milliseconds == 100
+    assert found.setup_milliseconds == 30
+    assert found.scene_milliseconds > 0
 
 
 def test_shadow_maps_are_the_frame_s_and_once_more_in_a_buffer(tmp_path) -> None:

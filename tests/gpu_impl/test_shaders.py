@@ -11,6 +11,7 @@ from gpu_impl import shader_source
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.context import shared_context
 from gpu_impl.device import Device
+from gpu_impl.passes.shadow_volume import VERTEX_BLOCKS
 from gpu_impl.shader_source import SHADERS, ShaderError, ShaderSource, compile_compute, compile_program
 from gpu_impl.visibilities import VISIBILITIES
 
@@ -126,6 +127,12 @@ def test_a_mistake_in_a_compute_shader_is_reported_with_its_place() -> None:
         compile_compute(shared_context(), source)
 
 
+def test_the_polygons_declare_no_more_storage_blocks_than_they_say() -> None:
+    # std430 blocks count whether they are read or not
+    text = ShaderSource("shadow_volume/polygon.vert.glsl", PLAIN).text
+    assert text.count("layout(std430") == VERTEX_BLOCKS
+
+
 def test_every_file_is_covered() -> None:
     mains = {name for pair in PASSES for name in pair} | {"scattering.frag.glsl", COMPUTE}
     assert mains | set(INCLUDES) == set(FILES)
@@ -145,6 +152,8 @@ TAKEN = [
 
 def compiled_cell(visibility: str, airlight: str, function: Phase, variants: list[dict[str, int]]) -> None:
     model, device = AIRLIGHT_MODELS[airlight], Device(shared_context())
+    # the contract leaves a strategy free to do without the map
+    looks_up = "shadow_lookup.glsl" in assembled(f'#include "{VISIBILITIES[visibility].source}"').files
     for defines in variants:
         program = device.program(
             "scattering.frag.glsl",
@@ -158,7 +167,7 @@ def compiled_cell(visibility: str, airlight: str, function: Phase, variants: lis
         )
         # the driver asked the strategy, and the strategy the model
         assert "sigma_s" in program
-        assert ("shadow_map" in program) == ("SHADOW_BUFFER" not in defines)
+        assert ("shadow_map" in program) == (looks_up and "SHADOW_BUFFER" not in defines)
     device.release()
 
 

@@ -111,7 +111,7 @@ def test_a_curved_surface_keeps_its_light(draw) -> None:
 def test_a_map_in_a_buffer_gives_the_same_bits(visibility: str, shadows: str, draw, tmp_path: Path) -> None:
     for lamp in (point(0.3, 2.6, 0), spot("0.3, 2.6, 0", "0, 0, 0", 40, 30)):
         scene: Scene = write_scene(tmp_path, lamp, GROUND + tilted(20), (32, 24))
-        settings = {"technique": f"{visibility}+quadrature", "steps": 16, "shadow_map": 33, "surface_shadows": shadows}
+        settings = {"technique": f"{visibility}+riemann", "steps": 16, "shadow_map": 33, "surface_shadows": shadows}
         one, other = (draw(scene, **settings, shadow_storage=storage) for storage in ("texture", "buffer"))
         for name, layer in one.layers.items():
             assert (layer == other.layers[name]).all()

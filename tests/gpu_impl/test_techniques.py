@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scene_files import spot, write_scene
 
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.techniques import find_technique
@@ -51,3 +52,12 @@ def test_what_is_none_of_the_choices_is_refused(setting: str, value: object) -> 
     with pytest.raises(InputError, match=r"There is no .*; use one of ") as caught:
         find_technique("Weng2010", **{setting: value})
     assert "\n" not in str(caught.value)
+
+
+def test_a_soft_spot_under_a_closed_form_is_said(tmp_path) -> None:
+    soft = write_scene(tmp_path, spot("0.3, 3.5, 0", "0, 0, 0", 24, 12))
+    (notice,) = find_technique("Weng2010").notices(soft)
+    assert "takes a spot's intensity as constant" in notice
+    assert "lit_intervals+quadrature" in notice
+    assert find_technique("lit_intervals+quadrature").notices(soft) == []
+    assert find_technique("Weng2010").notices(write_scene(tmp_path, spot("0.3, 3.5, 0", "0, 0, 0", 24, 24))) == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -57,6 +58,12 @@ def test_hardware_is_asked_by_queries_and_never_waited_for() -> None:
     assert clock.milliseconds() == {"shadow map": 1.0 + 3.0, "scattering": 2.0}
     assert clock.milliseconds() == {}
     assert device.finished == 0
+    # the next frame asks the same queries again
+    for name in ("geometry", "surface", "scattering"):
+        with clock.time_pass(name):
+            pass
+    assert sorted(clock.milliseconds().values()) == [1.0, 2.0, 3.0]
+    assert device.queries == 3
 
 
 def test_a_software_renderer_is_timed_by_the_wall_clock() -> None:
@@ -123,6 +130,9 @@ def test_the_eye_and_the_lights_turn_about_the_middle(tmp_path) -> None:
     np.testing.assert_array_equal(still.camera.to_world, scene.camera.to_world)
     np.testing.assert_array_equal(still.lights[0].position, scene.lights[0].position)
     up = scene.camera.to_world[:3, 1]
+    # the light is overhead, and its arm near the vertical
+    arm = scene.lights[0].position - middle
+    assert abs(arm @ up) > 0.9 * np.linalg.norm(arm)
     angles = []
     for number in range(1, 6):
         frame = moved(scene, number, bounds)
@@ -130,19 +140,42 @@ def test_the_eye_and_the_lights_turn_about_the_middle(tmp_path) -> None:
             (frame.camera.origin, scene.camera.origin),
             (frame.lights[0].position, scene.lights[0].position),
         ):
-            # as far from the middle and as high as before
+            # as far from the middle as before
             assert np.linalg.norm(now - middle) == pytest.approx(np.linalg.norm(before - middle))
-            assert now @ up == pytest.approx(before @ up)
-            assert np.linalg.norm(now - before) > 0
+        # the eye as high, and the light turned by the whole angle however it stands
+        assert frame.camera.origin @ up == pytest.approx(scene.camera.origin @ up)
+        now = frame.lights[0].position - middle
+        angle = SWAY * np.sin(number)
+        assert np.linalg.norm(now - arm) == pytest.approx(2 * np.sin(abs(angle) / 2) * np.linalg.norm(arm))
         # a rotation
         turn = frame.camera.to_world[:3, :3] @ np.linalg.inv(scene.camera.to_world[:3, :3])
         np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
-        # the other way round for the light, whose own frame turns with it
+        # a light's own frame turns with it
         back = frame.lights[0].to_world[:3, :3] @ np.linalg.inv(scene.lights[0].to_world[:3, :3])
-        np.testing.assert_allclose(back, turn.T, atol=1e-12)
+        np.testing.assert_allclose(back @ arm, now, atol=1e-12)
         angles.append(float(np.arccos((np.trace(turn) - 1) / 2)))
     assert max(angles) <= SWAY * (1 + 1e-9)
     assert len(set(np.round(angles, 12))) == 5
+
+
+def test_lights_turn_wherever_they_stand(tmp_path) -> None:
+    scene = write_scene(tmp_path, shapes=sphere(0.3, 1.3, 0, 0.4), emitters=point(0, 3, 0), size=(8, 8))
+    bounds = bounding_box(scene)
+    middle, angle = bounds.mean(axis=0), SWAY * np.sin(2)
+    for axis in scene.camera.to_world[:3, :3].T:
+        arm = 3 * axis
+        light = replace(scene.lights[0], position=middle + arm)
+        (frame,) = moved(replace(scene, lights=(light,)), 2, bounds).lights
+        assert np.linalg.norm(frame.position - light.position) == pytest.approx(2 * np.sin(angle / 2) * 3)
+        # a directional light's arm is the way that it comes from
+        side = np.roll(axis, 1)
+        to_world = np.column_stack([side, np.cross(axis, side), axis, np.zeros(3)])
+        sun = replace(light, kind="directional", to_world=np.vstack([to_world, [0, 0, 0, 1]]))
+        (frame,) = moved(replace(scene, lights=(sun,)), 2, bounds).lights
+        assert np.arccos(frame.direction @ sun.direction) == pytest.approx(angle)
+    inside = replace(scene.lights[0], position=middle)
+    (frame,) = moved(replace(scene, lights=(inside,)), 2, bounds).lights
+    np.testing.assert_allclose(frame.position, middle, atol=1e-12)
 
 
 def test_a_spot_turns_with_its_frame(tmp_path) -> None:

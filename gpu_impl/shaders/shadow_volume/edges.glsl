@@ -1,10 +1,7 @@
-// A scene's edges (silhouettes.py), those of them in one light's silhouette, and the call that draws their polygons.
+// Edges of a scene that are in one light's silhouette, and the call that draws their polygons.
 #include "contract.glsl"
 
 layout(std430, binding = 3) readonly restrict buffer Vertices { vec4 vertices[]; };
-// two vertices, where the edge's opposite vertices begin, how many there are
-layout(std430, binding = 4) readonly restrict buffer Edges { uvec4 edges[]; };
-layout(std430, binding = 5) readonly restrict buffer Opposite { uint opposite[]; };
 // Two vertices, and the bits of a number that says where the edge's polygon ends: of how many times the edge's distance
 // from the light, or of the distance along parallel light.
 layout(std430, binding = 6) restrict buffer Silhouette { uvec4 silhouette[]; };

@@ -1,14 +1,11 @@
 // A shadow polygon: the part of the plane through light and edge that lies behind the edge, two triangles without a far
 // end, or one that lies beyond whatever is seen.
-#extension GL_ARB_shader_viewport_layer_array : enable
-#extension GL_AMD_vertex_shader_layer : enable
 #include "camera_ray.glsl"
 #include "lattice.glsl"
 #include "shadow_volume/edges.glsl"
 
 uniform Light light;
 uniform mat4 world_to_lattice;   // to the clip space of the lattice's pixels
-uniform int layer;
 flat out vec4 plane;             // xyz: normal in the camera's frame, w: its distance from the eye times its length
 
 // By so much of its length an edge is made longer at either end: polygons that meet in a corner end where they must, each by
@@ -35,7 +32,6 @@ void main() {
     float pixel = 2.0 * tan_half.x * float(downsample) / float(image_size.x) * abs((world_to_lattice * vec4(v, 1.0)).w);
     v += (OVERLAP + ROUNDED * pixel / length(outwards)) * outwards;
     gl_Position = world_to_lattice * (corner < 2 ? vec4(v, 1.0) : far_corner(v, uintBitsToFloat(edge.z)));
-    gl_Layer = layer;
     vec3 normal = shadow_plane(light, a, b);
     plane = vec4(normal * mat3(camera_to_world), dot(normal, a - camera_to_world[3].xyz));
 }

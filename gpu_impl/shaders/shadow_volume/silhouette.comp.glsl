@@ -4,6 +4,10 @@
 #include "shadow_volume/edges.glsl"
 layout(local_size_x = 128) in;
 
+// a scene's edges (silhouettes.py): two vertices, where the edge's opposite vertices begin, how many there are
+layout(std430, binding = 4) readonly restrict buffer Edges { uvec4 edges[]; };
+layout(std430, binding = 5) readonly restrict buffer Opposite { uint opposite[]; };
+
 uniform Light light;
 uniform uint edge_count;
 
@@ -67,8 +71,10 @@ float nearest_point(vec3 a, vec3 b) {
 }
 
 void main() {
-    if (gl_GlobalInvocationID.x >= edge_count) return;
-    uvec4 edge = edges[gl_GlobalInvocationID.x];
+    // the groups of one axis may be too few
+    uint number = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (number >= edge_count) return;
+    uvec4 edge = edges[number];
     vec3 a = vertices[edge.x].xyz, b = vertices[edge.y].xyz;
     if (is_split(edge, a, b)) return;
     float end = uintBitsToFloat(reach);

@@ -7,7 +7,7 @@
 void visibility(Ray ray, Light light) {
     vec2 range = cone_interval(ray, light);
     if (range.x >= range.y) return;
-    vec2 region = shadow_region(ray, light, range);
+    vec2 region = shadow_region(ray, light, range, false);
     // without a shadow the region is empty and the first piece is all of the range
     for (int side = 0; side < 2; ++side) {
         float begin = side == 0 ? range.x : region.y, dt = side == 0 ? region.x - range.x : range.y - region.y;

@@ -7,5 +7,5 @@
 
 void visibility(Ray ray, Light light) {
     vec2 range = cone_interval(ray, light);
-    if (range.x < range.y) report_intervals(ray, light, range, shadow_region(ray, light, range));
+    if (range.x < range.y) report_intervals(ray, light, range, shadow_region(ray, light, range, true));
 }
