@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from itertools import cycle
 from pathlib import Path
@@ -37,8 +38,10 @@ def draw_figure(path: Path, rows: Sequence[Row], below: str) -> None:
         panels[1, column].set(xlabel=f"texels on a side of the shadow map ({STEPS_LADDER[-1]} samples)")
     for row in panels:
         row[0].set_ylabel("relative error of the scattering layer")
-    panels[0, -1].legend(loc="upper right", fontsize=7, frameon=False)
-    figure.supxlabel(f"whole: 95th percentile; dashed: median. {below}", fontsize=7, color="0.35")
+    # between the percentiles and the medians, where the thesis's scenes leave room
+    panels[0, -1].legend(loc="lower right", bbox_to_anchor=(1, 0.15), fontsize=7, frameon=False)
+    text = textwrap.fill(f"whole: 95th percentile; dashed: median. {below}", 60 * len(phases))
+    figure.supxlabel(text, fontsize=7, color="0.35")
     with replacing(path) as beside:
         figure.savefig(beside, format="png")
 
