@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 
+from analytic.models.one_ei.closed_form import partial_fractions
 from analytic.phase import Phase
-from analytic.phases.schlick import Schlick
 
 __all__ = ["partial_fractions_glsl", "polynomials_glsl"]
 
@@ -42,15 +41,7 @@ def partial_fractions_glsl(phase: Phase) -> str:
 
     Source: the derivation stands in analytic.models.one_ei.closed_form.
     """
-    residues: list[complex]
-    if isinstance(phase, Schlick):
-        k = phase.k
-        pole = math.sqrt((1 - k) / (1 + k))
-        residues = [1 / (2 * math.pi * math.sqrt((1 - k) * (1 + k))), -1j * k / (2 * math.pi * (1 + k))]
-    elif phase.name == "rayleigh":
-        pole, residues = 1.0, [9 / (16 * math.pi), 3j / (16 * math.pi), -3 / (8 * math.pi)]
-    else:
-        pole, residues = 1.0, [1 / (2 * math.pi)]
+    pole, residues = partial_fractions(phase)
     count = len(residues)
     # GLSL compiles what it does not run: it wants all three to be there
     conjugates = [complex(g).conjugate() for g in residues] + [0j] * (3 - count)

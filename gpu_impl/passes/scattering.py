@@ -51,13 +51,12 @@ def add_scattering(
     polygons : what `render_shadow_polygons` drew, where the visibility asks for it; this light's are in `layer`
     counts : RGBA32F    of the target's size, a channel for each of `COUNTERS`; None where nothing is counted
     """
-    grey = np.ptp(np.broadcast_to(scene.medium.sigma_t, 3)) == 0
     model = AIRLIGHT_MODELS[technique.airlight]
     program = device.program(
         "scattering.frag.glsl",
         defines=light_defines(scene, light)
         | shadow_map.defines
-        | {"GREY": int(grey), "STEPS": technique.steps}
+        | {"STEPS": technique.steps}
         | ({"COUNTING": 1} if counts else {}),
         includes={
             "<airlight>": model.source,

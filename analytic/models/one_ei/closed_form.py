@@ -47,7 +47,7 @@ from analytic.phase import Phase
 from analytic.phases.schlick import Schlick
 from analytic.segments import Segments, h_times_v
 
-__all__ = ["MODEL", "one_ei"]
+__all__ = ["MODEL", "one_ei", "partial_fractions"]
 
 Floats = NDArray[np.floating]
 
@@ -67,13 +67,13 @@ def one_ei(segments: Segments, phase: Phase) -> Floats:
     Source: Weng 2010, Eq. 18, repaired; the closed forms are this module's.
     """
     s = segments
-    q, residues = _partial_fractions(phase)
+    q, residues = partial_fractions(phase)
     near = np.exp(-s.sigma_t * s.d_a) * _tail(s.h, s.x_a, s.sigma_t, q, residues)
     far = np.exp(-s.depth_through_b) * _tail(s.h, s.x_b, s.sigma_t, q, residues)
     return (near - far) / s.h
 
 
-def _partial_fractions(phase: Phase) -> tuple[float, tuple[complex, ...]]:
+def partial_fractions(phase: Phase) -> tuple[float, tuple[complex, ...]]:
     """Pole q and residues g_1, g_2, ... of p 2 / (1 + v^2) = Im sum_n g_n / (v - iq)^n."""
     if isinstance(phase, Schlick):
         k = phase.k
