@@ -13,6 +13,9 @@ from experiments.accuracy_cli import accuracy
 from experiments.agree_cli import agree
 from experiments.benchmark_cli import benchmark_app
 from experiments.cache_cli import cache_app
+from experiments.compare_cli import compare
+from experiments.gate_cli import gate
+from experiments.figures_cli import figures
 from experiments.mathematics_cli import atlas, audit, quadrature, spectra
 from experiments.meshes_cli import meshes_app
 from experiments.options import (
@@ -27,6 +30,7 @@ from experiments.options import (
     parse_parameters,
 )
 from experiments.render_cli import render
+from experiments.run_cli import page, run
 from experiments.termination import terminated_cleanly
 from reference.goal import Goal
 from scenes.errors import InputError
@@ -116,7 +120,7 @@ def reference(
     import airlight
     from experiments.console import say
     from experiments.exr import check_writable
-    from experiments.terminal import TerminalWatcher, announce_reference, announce_scene, announce_variant, told
+    from experiments.terminal import ReferenceWatcher, announce_reference, announce_scene, announce_variant, told
 
     # refused before the scene is loaded
     Goal(rel_error, time_limit, percentile, sample_limit)
@@ -124,7 +128,7 @@ def reference(
     loaded = airlight.load(scene, size, **parse_parameters(parameter))
     announce_scene(loaded)
     announce_variant()
-    with terminated_cleanly(), TerminalWatcher(rel_error) as watcher:
+    with terminated_cleanly(), ReferenceWatcher(rel_error) as watcher:
         result = airlight.reference(
             loaded,
             rel_error,
@@ -140,63 +144,5 @@ def reference(
     say(f"{out}: {loaded.name}, {told(result)}")
 
 
-@app.command()
-def compare(
-    picture: Annotated[Path, typer.Argument(metavar="F.exr", help="The picture to judge; any program's EXR.")],
-    truth: Annotated[Path, typer.Argument(metavar="REFERENCE.exr", help="The reference.")],
-    layer: Annotated[str, typer.Option(help="Which layer: composite, scattering or surface.")] = "composite",
-    heatmap: Annotated[Path | None, typer.Option(help="Write a PNG with both pictures and their errors.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the metrics as JSON.")] = False,
-) -> None:
-    """Measure how far a picture is from its reference.
-
-    Example: airlight compare dragon.exr reference.exr --layer scattering --heatmap error.png
-    """
-    import json as json_module
-    from dataclasses import asdict
-
-    import airlight
-    from experiments.compare import other_scene
-    from experiments.console import console, say, warn
-    from experiments.terminal import metrics_table
-
-    pictures = airlight.read(picture), airlight.read(truth)
-    metrics = airlight.compare(*pictures, layer=layer, sheet=heatmap)
-    if notice := other_scene(*pictures):
-        warn(notice)
-    if json:
-        print(json_module.dumps({"layer": layer, **asdict(metrics)}))
-    else:
-        console.print(metrics_table(layer, metrics))
-        if heatmap:
-            say(f"Heat map: {heatmap}")
-
-
-@app.command()
-def run(
-    suite: Annotated[
-        str, typer.Argument(metavar="SUITE", help="A shipped suite's name or the path of a TOML file.")
-    ] = "quick",
-    out: Annotated[Path, typer.Option(help="Folder in which the folder of this run is made.")] = Path("runs"),
-) -> None:
-    """Run a suite: techniques beside references, with a table, a sheet and an EXR per case.
-
-    Example: airlight run quick
-    """
-    from experiments.console import console, say
-    from experiments.suite import load_suite
-    from experiments.terminal import TerminalWatcher, announce_variant, results_table
-
-    name, loaded = load_suite(suite)
-    # says which Mitsuba serves before anything is computed
-    announce_variant()
-    from experiments.runner import run_suite
-
-    with terminated_cleanly(), TerminalWatcher(loaded.reference.rel_error) as watcher:
-        rows, folder = run_suite(name, loaded, out, watcher)
-    console.print(results_table(rows))
-    say(f"Results: {folder.resolve()}")
-
-
-for command in (accuracy, agree, audit, atlas, quadrature, spectra):
+for command in (compare, run, page, gate, accuracy, agree, audit, atlas, quadrature, spectra, figures):
     app.command()(command)

@@ -47,10 +47,20 @@ class Renderer:
     def release(self) -> None:
         """Give back what the scene holds on the GPU."""
         self.passes.release()
+        self._forget_views()
+        self.device.release_spare_textures()
+
+    def _forget_views(self) -> None:
         for view in self._views.values():
             view.give_back(self.device)
         self._views.clear()
-        self.device.release_spare_textures()
+
+    def look(self, scene: Scene) -> None:
+        """Take another eye or other lights; meshes and the picture's size are to be the same."""
+        if scene is not self.scene:
+            self._forget_views()
+            self.scene = scene
+            self.passes.look(scene)
 
     def render(self, technique: Technique) -> Frame:
         """Draw a frame; its view is kept for other techniques.

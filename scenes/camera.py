@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from scenes.errors import InputError
-from scenes.model import Camera
+from scenes.model import Array, Camera
 from scenes.xml_nodes import Node
 
 LARGEST_SIDE = 16384
 
 
-def load_camera(node: Node, size: tuple[int, int] | None) -> tuple[Camera, Node | None]:
-    """Read a sensor and its film, whose size is replaced by `size` where that is given.
+def load_camera(node: Node, size: tuple[int, int] | None, to_world: Array | None = None) -> tuple[Camera, Node | None]:
+    """Read a sensor and its film; its size and its place are replaced by `size` and `to_world` where they are given.
 
     Returns
     -------
@@ -28,6 +28,8 @@ def load_camera(node: Node, size: tuple[int, int] | None) -> tuple[Camera, Node 
         raise node.refuse("is not supported; use perspective.")
     film = node.child("Film")
     width, height = _film_size(node, film, size)
+    if to_world is not None:
+        node.place(to_world)
     to_world = node.transform()
     if not np.allclose(to_world[:3, :3].T @ to_world[:3, :3], np.eye(3), atol=1e-5):
         raise node.refuse("has a 'to_world' that scales or shears; use <lookat>, rotations and translations.")

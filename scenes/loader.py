@@ -8,6 +8,7 @@ refused, because a picture that silently ignores part of its scene is wrong.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +49,21 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
     InputError
         The file is missing, is not a scene, or holds something outside the supported subset.
     """
+    return load_seen_from(scene, None, size, parameters)
+
+
+def load_seen_from(
+    scene: str | Path,
+    camera_to_world: Array | None,
+    size: tuple[int, int] | None,
+    parameters: Mapping[str, object],
+) -> Scene:
+    """Load a scene as `load` does, with its camera elsewhere.
+
+    Parameters
+    ----------
+    camera_to_world : (4, 4)    None for its own; `scenes.orbit` makes others
+    """
     path = scene_path(scene)
     if size is not None:
         check_size(size)
@@ -65,7 +81,7 @@ def load(scene: str | Path, /, size: tuple[int, int] | None = None, **parameters
     root.ignore(*OF_NO_BEARING)
     replaced = tuple(node.plugin for node in root.children("Integrator") if node.plugin != "volpath")
     sensor = _only(root.children("Sensor"), "sensor", path)
-    camera, around = load_camera(sensor, size)
+    camera, around = load_camera(sensor, size, camera_to_world)
     shapes = root.children("Shape")
     fog = take_fog(sensor, camera, around, shapes, path.parent)
     medium, phase = load_medium(fog.medium)

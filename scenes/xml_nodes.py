@@ -135,6 +135,11 @@ class Node:
             raise self.refuse(f"has a '{name}' with a rotation about an axis that is not of unit length; normalise it.")
         return matrix
 
+    def place(self, to_world: NDArray[np.float64]) -> None:
+        """Put another transform in the place of `to_world`, (4, 4), whether the scene gives one or not."""
+        self.props["to_world"] = mitsuba().ScalarAffineTransform4d(np.asarray(to_world, dtype=np.float64))
+        self.unread["to_world"] = None
+
     def nested(self, name: str) -> Node | None:
         """Take the plugin that stands as this property, or None where it is a plain value or not there."""
         import mitsuba as mi

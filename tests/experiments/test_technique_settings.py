@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import inspect
 
-import airlight
 from experiments.render_cli import render
-from experiments.runner import case_name, technique_label
-from experiments.suite import TechniqueChoice
+from experiments.suite import Suite, TechniqueChoice, cases_of
+from experiments.technique_label import technique_label
 from gpu_impl.techniques import CHOICES, RANGES, SETTINGS, find_technique
 
 
@@ -23,18 +22,22 @@ def test_the_command_takes_every_setting() -> None:
     assert {"visibility", "airlight_model", *SETTINGS} <= inspect.signature(render).parameters.keys()
 
 
+def case_names(*choices: dict) -> list[str]:
+    suite = {"scenes": ["empty"], "size": [2, 2], "techniques": list(choices)}
+    return [case.name for case in cases_of(Suite.model_validate({"products": [suite]}))]
+
+
 def test_a_case_is_called_after_the_settings_that_are_not_its_techniques_own() -> None:
-    scene = airlight.load("empty", size=(2, 2))
     changed = {"steps": 5, "shadow_map": 8, "upsample": "bilinear", "composition": "printed"}
-    frame = airlight.render(scene, "Weng2010", **changed)
-    assert case_name(scene, frame) == "empty-Weng2010-steps-5-shadow_map-8-upsample-bilinear-composition-printed"
-    cell = airlight.render(scene, "Weng2010", airlight="quadrature", shadow_map=8)
-    assert case_name(scene, cell) == "empty-lit_intervals+quadrature-shadow_map-8"
+    cell = {"name": "Weng2010", "airlight": "quadrature", "shadow_map": 8}
+    assert case_names({"name": "Weng2010"} | changed, cell) == [
+        "empty-Weng2010-steps-5-shadow_map-8-upsample-bilinear-composition-printed",
+        "empty-lit_intervals+quadrature-shadow_map-8",
+    ]
 
 
 def test_names_of_files_have_no_colon() -> None:
-    scene = airlight.load("empty", size=(2, 2))
-    assert case_name(scene, airlight.render(scene, "Weng2010:two-ei", steps=5)) == "empty-Weng2010-two-ei-steps-5"
+    assert case_names({"name": "Weng2010:two-ei", "steps": 5}) == ["empty-Weng2010-two-ei-steps-5"]
 
 
 def test_a_label_says_which_settings_are_not_the_techniques_own() -> None:

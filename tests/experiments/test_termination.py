@@ -8,14 +8,14 @@ import signal
 import pytest
 
 import experiments.benchmark.report
-import experiments.runner
+import experiments.run.cluster
 
 
 @pytest.mark.parametrize(
     ("command", "work", "name"),
     [
         (("benchmark", "reference", "sphere", "--size", 4, 4), experiments.benchmark.report, "run_benchmark"),
-        (("run", "quick"), experiments.runner, "run_suite"),
+        (("run", "quick", "--set", "scenes=empty"), experiments.run.cluster, "cluster"),
     ],
     ids=["benchmark", "run"],
 )
