@@ -14,8 +14,8 @@ from experiments.agree_cli import agree
 from experiments.benchmark_cli import benchmark_app
 from experiments.cache_cli import cache_app
 from experiments.compare_cli import compare
-from experiments.gate_cli import gate
 from experiments.figures_cli import figures
+from experiments.gate_cli import gate
 from experiments.mathematics_cli import atlas, audit, quadrature, spectra
 from experiments.meshes_cli import meshes_app
 from experiments.options import (

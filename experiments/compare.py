@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Protocol, TypeGuard
@@ -10,9 +10,10 @@ from typing import Any, Protocol, TypeGuard
 import numpy as np
 
 from experiments.exr import MAIN, check_writable
+from experiments.heat_maps.heat_map import HeatMap
 from experiments.metrics import Image, Metrics, measure
 from experiments.pictures import Picture
-from experiments.sheet import summary, write_sheet
+from experiments.sheet import ABSOLUTE, SIGNED_RELATIVE, summary, write_sheets
 from gpu_impl.frame import Frame
 from reference.estimate import Reference
 from scenes.errors import InputError
@@ -48,25 +49,50 @@ def compare(
     InputError
         A layer is missing, the sizes or the scenes differ, or the sheet cannot be written.
     """
+    return compare_all([test], truth, standard_error, layer, sheet)[0]
+
+
+def compare_all(
+    tests: Sequence[Image | Layered],
+    truth: Image | Layered,
+    standard_error: Image | None = None,
+    layer: str | None = None,
+    sheet: Path | None = None,
+    heat_maps: Sequence[HeatMap] = (SIGNED_RELATIVE, ABSOLUTE),
+) -> list[Metrics]:
+    """Measure pictures against one reference, as `compare` does, and draw them on one scale.
+
+    Parameters
+    ----------
+    heat_maps : of the sheet
+    """
     if sheet:
         check_writable(sheet, ".png")
-    if layer and not (_is_result(test) or _is_result(truth)):
+    if layer and not any(map(_is_result, (*tests, truth))):
         raise InputError(f"An array has no layer '{layer}'; compare results, or leave the layer out.")
     layer = layer or MAIN
-    digests = {result.scene_digest for result in (test, truth) if isinstance(result, Frame | Reference)}
+    digests = {result.scene_digest for result in (*tests, truth) if isinstance(result, Frame | Reference)}
     if len(digests) > 1:
         raise InputError(
             "The picture is not of the reference's scene, or not with its parameters; make both from the same scene."
         )
-    images = _layer(test, layer, "The picture"), _layer(truth, layer, "The reference")
+    images = [_layer(test, layer, "The picture") for test in tests]
+    reference = _layer(truth, layer, "The reference")
     if standard_error is None and _is_result(truth):
         standard_error = truth.layers.get(f"standard_error.{layer}")
-    metrics = measure(*images, standard_error)
+    metrics = [measure(image, reference, standard_error) for image in images]
     if sheet:
+        names = [_name(test, "a picture") for test in tests]
+        against = f"against {_name(truth, 'the reference')}: {layer}"
+        lines = [summary(asdict(found)) for found in metrics]
+        if len(tests) == 1:
+            against = f"{names[0]} {against}"
+        else:
+            lines = [f"{name};  {line}" for name, line in zip(names, lines, strict=True)]
         stand_ins = truth.metadata.get("stand_ins", "") if isinstance(truth, Picture) else ""
         note = f"stand-in for {readable(stand_ins)}" if stand_ins else ""
-        title = f"{_name(test, 'a picture')} against {_name(truth, 'the reference')}: {layer}"
-        write_sheet(sheet, title, *images, summary(asdict(metrics)), note)
+        rows = list(zip(lines, images, strict=True))
+        write_sheets(sheet, against, rows, reference, standard_error, note, heat_maps)
     return metrics
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,6 @@ from rich.table import Table
 
 from experiments.bars import Bars
 from experiments.console import plain_table, warn
-from experiments.metrics import Metrics
 from experiments.run.rows import Row
 from experiments.run.watcher import Watcher
 from experiments.scene_notices import scene_notices
@@ -214,13 +212,3 @@ def _short(value: Any) -> str:
 
 def _vary(rows: list[Row], key: str) -> bool:
     return len({row[key] for row in rows}) > 1
-
-
-def metrics_table(layer: str, metrics: Metrics) -> Table:
-    """All metrics of one layer, a line each."""
-    table = Table(title=f"{layer} against the reference", title_justify="left")
-    table.add_column("metric")
-    table.add_column("value", justify="right")
-    for name, value in asdict(metrics).items():
-        table.add_row(name, "-" if value is None else f"{value:.6g}")
-    return table

@@ -16,15 +16,26 @@ class Visibility:
     what : str               in a few words
     polygons : str or None   which shadow polygons it asks for (passes/shadow_volume.py): "repaired", those that can
                              matter, or "printed", all of them; None for none
+    blue_noise : bool        whether it reads the tile of blue noise (blue_noise.py)
     """
 
     source: str
     what: str
     polygons: Literal["repaired", "printed"] | None = None
+    blue_noise: bool = False
 
 
 VISIBILITIES = {
     "uniform_march": Visibility("visibility/uniform_march.glsl", "equal steps over the ray"),
+    "uniform_march:jittered": Visibility(
+        "visibility/uniform_march_jittered.glsl",
+        "equal steps, each ray's samples shifted by interleaved gradient noise (Jimenez 2014)",
+    ),
+    "uniform_march:blue_noise": Visibility(
+        "visibility/uniform_march_blue_noise.glsl",
+        "equal steps, each ray's samples shifted by a tile of blue noise (Ulichney 1993)",
+        blue_noise=True,
+    ),
     "lit_intervals": Visibility(
         "visibility/lit_intervals.glsl",
         "samples between the first and the last shadow polygon, merged to lit intervals (Algorithms 4.1 and 4.2 "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from pathlib import Path
 from typing import Any
 
 from experiments.suite.cases import Case
@@ -18,7 +19,7 @@ def identity(case: Case) -> Row:
     return {
         "case": case.name,
         "product": case.product,
-        "scene": case.scene,
+        "scene": Path(case.scene).stem,
         "phase": case.phase,
         "width": case.size[0],
         "height": case.size[1],

@@ -188,4 +188,5 @@ def _keep_pictures(folder: Path, shot: Shot, row: Row) -> None:
         shot.reference.scattering,
         summary(numbers) if "errors" in case.measure else "",
         stand_ins,
+        standard_error=shot.reference.standard_error("scattering"),
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -76,13 +77,27 @@ def cases_of(suite: Suite) -> list[Case]:
     """
     cases: list[Case] = []
     for product in suite.products:
-        cases += _cases_of(product, product.name if len(suite.products) > 1 else "")
+        cases += _cases_of(_with_paths(product, suite.folder), product.name if len(suite.products) > 1 else "")
     counted = Counter(case.name for case in cases)
     if twice := next((name for name, count in counted.items() if count > 1), None):
         raise InputError(
             f"The case {twice} stands in the suite twice: leave one out, or give its product another name."
         )
     return cases
+
+
+def _with_paths(product: Product, folder: Path | None) -> Product:
+    """Paths as the working directory has them: those of a suite's file count from its own folder."""
+    if folder is None:
+        return product
+    scenes = [
+        str(folder / scene) if not os.path.isfile(scene) and os.path.isfile(folder / scene) else scene
+        for scene in product.scenes
+    ]
+    reference = product.reference
+    if reference.folder is not None:
+        reference = reference.model_copy(update={"folder": str(folder / reference.folder)})
+    return product.model_copy(update={"scenes": scenes, "reference": reference})
 
 
 def _cases_of(product: Product, prefix: str) -> Iterator[Case]:

@@ -57,7 +57,7 @@ def load_suite(suite: str, changes: Sequence[str] = ()) -> tuple[str, Suite]:
         raise InputError(f"{path} cannot be read ({error.strerror}).") from None
     changed = [_change(found, change) for change in changes]
     try:
-        return path.stem, Suite.model_validate(_with_products(found))
+        return path.stem, Suite.model_validate({**_with_products(found), "folder": path.absolute().parent})
     except ValidationError as error:
         raise InputError(_explained(error, path, text, found, changed)) from None
 

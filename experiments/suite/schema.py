@@ -149,7 +149,7 @@ class Product(_Strict):
     Attributes
     ----------
     name : str             stands in the column `product`
-    scenes : names or paths; a path is relative to the working directory
+    scenes : names, or paths from the working directory or else from the suite's own folder
     size : [width, height] or a list of them
     phases : names of phase functions, or tables such as {name = "hg", g = 0.6}
     parameters : of the scenes, each a value or a list
@@ -239,6 +239,8 @@ class Suite(_Strict):
 
     products: Annotated[list[Product], Field(min_length=1)]
     study: str = "errors"
+    # of the file, which paths in it are relative to; where it lies decides nothing
+    folder: Annotated[Path | None, Field(exclude=True)] = None
 
     @field_validator("study")
     @classmethod

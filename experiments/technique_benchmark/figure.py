@@ -52,12 +52,12 @@ def _draw_panel(panel: Axes, result: Result) -> None:
     places = np.arange(len(drawn))
     left = np.zeros(len(drawn))
     for name in PASSES:
-        widths = np.array([float(np.median(one.passes.get(name, [0.0]))) for one in drawn])
+        widths = np.array([one.times.pass_median(name) for one in drawn])
         panel.barh(places, widths, left=left, color=COLOURS[name], height=0.75)
         left += widths
-    whole = [float(np.median(one.milliseconds)) for one in drawn]
+    whole = [float(np.median(one.times.milliseconds)) for one in drawn]
     panel.plot(whole, places, "|", color="0.1", ms=9, mew=1.2)
-    baseline = float(np.median(result.contenders[BASELINE.name].milliseconds))
+    baseline = float(np.median(result.contenders[BASELINE.name].times.milliseconds))
     panel.axvline(baseline, color="0.3", lw=0.8, ls=":")
     panel.set_yticks(places, [one.contender.name for one in drawn], fontsize=7)
     panel.invert_yaxis()

@@ -1,17 +1,16 @@
-"""One scene: every contender's error, work, memory and time, the times in rounds that run each of them once."""
+"""One scene: every contender's error, work, memory and time."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
+from experiments.intervals import Array
 from experiments.metrics import Metrics, measure
+from experiments.rounds import Times, time_in_rounds
 from experiments.technique_benchmark.contenders import AS_DENSE, BASELINE, BOUNDED, Contender
-from experiments.technique_benchmark.intervals import Array
 from experiments.technique_benchmark.spacing import steps_as_dense
-from gpu_impl.device import Device, shared_device
+from gpu_impl.device import shared_device
 from gpu_impl.memory import Footprint, footprint
 from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import Technique
@@ -19,8 +18,6 @@ from gpu_impl.timing import PassClock
 from reference.estimate import Reference
 from scenes.errors import InputError
 from scenes.model import Scene
-
-SEED = 51
 
 
 @dataclass(frozen=True)
@@ -34,9 +31,7 @@ class Measured:
     metrics : Metrics               errors of the scattering layer, at the size that is timed
     counts : dict                   means over the rays that are evaluated, by the names of `COUNTERS`
     rays : int                      how many these are
-    milliseconds : (rounds,)        wall clock of whole frames
-    clocked : (rounds,)             the same of frames with a clock at each pass
-    passes : dict of (rounds,)      what that clock says [ms]
+    times : Times                   what the clocks said
     """
 
     contender: Contender
@@ -46,9 +41,7 @@ class Measured:
     footprint: Footprint | None = None
     counts: dict[str, float] = field(default_factory=dict)
     rays: int = 0
-    milliseconds: Array = field(default_factory=lambda: np.empty(0))
-    clocked: Array = field(default_factory=lambda: np.empty(0))
-    passes: dict[str, Array] = field(default_factory=dict)
+    times: Times = field(default_factory=Times)
 
 
 @dataclass(frozen=True)
@@ -68,7 +61,7 @@ class Result:
 
     def ratios(self, name: str, to: str = BASELINE.name) -> Array:
         """Time of a contender over that of another in the same round, (rounds,); both draw the scene."""
-        return self.contenders[name].milliseconds / self.contenders[to].milliseconds
+        return self.contenders[name].times.milliseconds / self.contenders[to].times.milliseconds
 
 
 def measure_scene(
@@ -110,8 +103,9 @@ def measure_scene(
             tell(f"memory and set-up, {name}")
             found[name] = replace(one, footprint=footprint(scene, one.technique, device))
     drawn = {name: one.technique for name, one in found.items() if not one.refusal}
-    times = time_in_rounds(scene, device, drawn, rounds, tell)
-    timed = {name: replace(one, **times.get(name, {})) for name, one in found.items()}
+    with Renderer(scene, device) as renderer:
+        times = time_in_rounds(renderer, drawn, rounds, tell)
+    timed = {name: replace(one, times=times.get(name, Times())) for name, one in found.items()}
     return Result(scene, reference, timed, PassClock(device).method)
 
 
@@ -122,41 +116,3 @@ def _prepared(contender: Contender, scene: Scene) -> Measured:
     except InputError as error:
         return Measured(contender, technique, refusal=str(error))
     return Measured(contender, technique)
-
-
-def time_in_rounds(
-    scene: Scene, device: Device, techniques: dict[str, Technique], rounds: int, tell: Callable[[str], None]
-) -> dict[str, dict]:
-    """Time all techniques once a round, in an order drawn anew, so that whatever slows the machine down meets them all.
-
-    Each draws the same frame of the same motion twice: with nothing but the whole timed, and with a clock at each pass,
-    which comes first in every other round. The first round, in which shaders are compiled, does not count.
-
-    Returns
-    -------
-    dict of dict
-        `milliseconds`, `clocked` and `passes` of `Measured`, by the techniques' names.
-    """
-    order = np.random.default_rng(SEED)
-    plain: dict[str, list[float]] = {name: [] for name in techniques}
-    clocked: dict[str, list[float]] = {name: [] for name in techniques}
-    passes: dict[str, list[dict[str, float]]] = {name: [] for name in techniques}
-    clock = PassClock(device)
-    with Renderer(scene, device) as renderer:
-        for number in range(rounds + 1):
-            tell(f"round {number} of {rounds}")
-            for name in order.permutation(list(techniques)).tolist():
-                for with_clock in (False, True) if number % 2 == 0 else (True, False):
-                    if with_clock:
-                        clocked[name].append(renderer.frame_time(techniques[name], number, clock))
-                        passes[name].append(clock.milliseconds())
-                    else:
-                        plain[name].append(renderer.frame_time(techniques[name], number))
-    return {
-        name: {
-            "milliseconds": np.array(plain[name][1:]),
-            "clocked": np.array(clocked[name][1:]),
-            "passes": {one: np.array([found[one] for found in passes[name][1:]]) for one in passes[name][0]},
-        }
-        for name in techniques
-    }

@@ -9,11 +9,11 @@ from pathlib import Path
 import polars
 
 from experiments.atlas.timing import processor
+from experiments.intervals import CONFIDENCE
 from experiments.pages import made_by
 from experiments.provenance import commit, scene_file
 from experiments.technique_benchmark.contenders import BASELINE, ERROR_LIMITS, FAST, STEPS
 from experiments.technique_benchmark.figure import draw_figure
-from experiments.technique_benchmark.intervals import CONFIDENCE
 from experiments.technique_benchmark.measurement import Result
 from experiments.technique_benchmark.summary import Row, pair_rows, rows
 from experiments.technique_benchmark.tables import contenders_table, pairs_table, passes_table, rates_table, title

@@ -83,7 +83,7 @@ def rates(results: Sequence[Result]) -> Table:
         for name, one in result.contenders.items():
             if one.refusal or not one.metrics:
                 continue
-            median = float(np.median(one.milliseconds))
+            median = float(np.median(one.times.milliseconds))
             errors = (one.metrics.rel_50, one.metrics.rel_95)
             table.add_row(
                 title(result),

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from experiments.benchmark.efficiency import quartiles
+from experiments.intervals import median_interval
 from experiments.provenance import TECHNIQUE_KEYS, describe_scene
 from experiments.technique_benchmark.budget import triangle_count
 from experiments.technique_benchmark.contenders import ERROR_LIMITS, FAST_ROWS, PAIRS, published_rate
-from experiments.technique_benchmark.intervals import Array, median_interval
 from experiments.technique_benchmark.measurement import Measured, Result
 from gpu_impl.device import shared_device
 from gpu_impl.timing import PASSES
@@ -40,13 +40,13 @@ def _numbers(result: Result, one: Measured) -> Row:
     settings = {TECHNIQUE_KEYS.get(key, key): value for key, value in asdict(one.technique).items()}
     if one.refusal or not one.metrics or not one.footprint:
         return {**settings, "refusal": one.refusal}
-    low, middle, high = quartiles(one.milliseconds)
+    low, middle, high = quartiles(one.times.milliseconds)
     ratios = result.ratios(one.contender.name)
     least, most = median_interval(ratios)
     return {
         **settings,
         "refusal": "",
-        "rounds": one.milliseconds.size,
+        "rounds": one.times.milliseconds.size,
         "milliseconds_25": low,
         "milliseconds_50": middle,
         "milliseconds_75": high,
@@ -55,18 +55,13 @@ def _numbers(result: Result, one: Measured) -> Row:
         "over_march": float(np.median(ratios)),
         "over_march_low": least,
         "over_march_high": most,
-        "clocked_over_plain": float(np.median(one.clocked / one.milliseconds)),
-        **{f"milliseconds_{name.replace(' ', '_')}": _median(one.passes.get(name)) for name in PASSES},
+        "clocked_over_plain": float(np.median(one.times.clocked / one.times.milliseconds)),
+        **{f"milliseconds_{name.replace(' ', '_')}": one.times.pass_median(name) for name in PASSES},
         **{f"error_{name}": value for name, value in asdict(one.metrics).items()},
         "rays": one.rays,
         **{f"{name}_per_ray": value for name, value in one.counts.items()},
         **asdict(one.footprint),
     }
-
-
-def _median(values: Array | None) -> float:
-    """Of a pass; 0 where a technique has none of it."""
-    return 0.0 if values is None else float(np.median(values))
 
 
 def pair_rows(result: Result) -> list[Row]:
@@ -80,7 +75,7 @@ def pair_rows(result: Result) -> list[Row]:
             continue
         ratios = result.ratios(pair.first, pair.second)
         low, high = median_interval(ratios)
-        passes = first.passes["scattering"] / second.passes["scattering"]
+        passes = first.times.passes["scattering"] / second.times.passes["scattering"]
         pass_low, pass_high = median_interval(passes)
         found.append(
             {
@@ -129,7 +124,7 @@ def fastest(result: Result) -> Measured | None:
     """The fast row of a scene: the fastest of `FAST_ROWS`, of those within `ERROR_LIMITS` where there are any."""
     drawn = [one for name, one in result.contenders.items() if name in FAST_ROWS and not one.refusal]
     within = list(filter(is_within, drawn))
-    return min(within or drawn, key=lambda one: float(np.median(one.milliseconds)), default=None)
+    return min(within or drawn, key=lambda one: float(np.median(one.times.milliseconds)), default=None)
 
 
 def is_within(one: Measured) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from experiments.markdown import table
 from experiments.technique_benchmark.budget import triangle_count
 from experiments.technique_benchmark.contenders import BASELINE, PAIRS, published_rate
 from experiments.technique_benchmark.measurement import Result
@@ -13,12 +14,6 @@ from experiments.technique_benchmark.summary import Row, fastest, is_within, pai
 from gpu_impl.timing import PASSES
 
 MEGABYTE = 1e6
-
-
-def table(headings: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
-    """A Markdown table, its first column to the left and the others to the right."""
-    rule = "|---|" + "--:|" * (len(headings) - 1)
-    return "\n".join([f"| {' | '.join(headings)} |", rule, *(f"| {' | '.join(line)} |" for line in lines)])
 
 
 def title(result: Result) -> str:
@@ -45,7 +40,7 @@ def rates_table(results: Sequence[Result]) -> str:
         published = published_rate(result.scene)
         if not (one := fastest(result)) or not one.metrics:
             continue
-        median = float(np.median(one.milliseconds))
+        median = float(np.median(one.times.milliseconds))
         lines.append(
             [
                 title(result),
@@ -68,8 +63,8 @@ def passes_table(results: Sequence[Result]) -> str:
     for result in results:
         if not (one := fastest(result)):
             continue
-        passes = [float(np.median(one.passes.get(name, [0.0]))) for name in PASSES]
-        numbers = [*passes, sum(passes), float(np.median(one.clocked)), float(np.median(one.milliseconds))]
+        passes = [one.times.pass_median(name) for name in PASSES]
+        numbers = [*passes, sum(passes), float(np.median(one.times.clocked)), float(np.median(one.times.milliseconds))]
         lines.append([title(result), *map(_short, numbers)])
     return table(headings, lines) if lines else ""
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 import numpy as np
 
 from analytic.phase import Phase
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
+from gpu_impl.blue_noise import blue_noise_uniforms
 from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import Device
 from gpu_impl.lattice import Lattice
@@ -51,7 +52,7 @@ def add_scattering(
     polygons : what `render_shadow_polygons` drew, where the visibility asks for it; this light's are in `layer`
     counts : RGBA32F    of the target's size, a channel for each of `COUNTERS`; None where nothing is counted
     """
-    model = AIRLIGHT_MODELS[technique.airlight]
+    model, strategy = AIRLIGHT_MODELS[technique.airlight], VISIBILITIES[technique.visibility]
     program = device.program(
         "scattering.frag.glsl",
         defines=light_defines(scene, light)
@@ -60,7 +61,7 @@ def add_scattering(
         | ({"COUNTING": 1} if counts else {}),
         includes={
             "<airlight>": model.source,
-            "<visibility>": VISIBILITIES[technique.visibility].source,
+            "<visibility>": strategy.source,
             "<phase>": f"phase/{scene.phase.name}.glsl",
         },
         generated=model.generated(scene.phase),
@@ -70,7 +71,8 @@ def add_scattering(
     set_uniforms(program, Lattice.of(scene.camera, technique.downsample).uniforms)
     if polygons:
         set_uniforms(program, bind_polygons(polygons, layer))
-    with phase_uniforms(device, program, scene.phase):
+    noise = blue_noise_uniforms(device, program) if strategy.blue_noise else nullcontext()
+    with phase_uniforms(device, program, scene.phase), noise:
         device.fill(program, *filter(None, (target, counts)), add=not first)
 
 

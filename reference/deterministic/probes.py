@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.deterministic.equiangular_variable import angle_between, place_at
+from reference.deterministic.packets import packed
 from reference.deterministic.ray_spans import Array, Rays
 from reference.deterministic.shadow_rays import ShadowRays
 from reference.integrator import mi
@@ -132,7 +133,7 @@ class Prober:
             row, step = np.nonzero(differs)
             self._begins_lit[rays] = seen[:, 0]
             probe = row * (steps + 1) + step
-            low, high = (np.array(dr.gather(mi.Float64, t, mi.UInt32(one))) for one in (probe, probe + 1))
+            low, high = (np.array(dr.gather(mi.Float64, t, packed(mi.UInt32, one))) for one in (probe, probe + 1))
             found.append(Changes(rays[row], low, high, seen[row, step]))
         return Changes.joined(*found), np.concatenate(finer)
 
@@ -180,7 +181,7 @@ class Prober:
             return np.ones(dark.size)
         row = dr.arange(mi.UInt32, dark.size)
         origin, direction = self._spread_rays(changes.ray, row)
-        occluder = np.array(self._shadow_rays.to_occluder(self._light, origin + direction * mi.Float64(dark)))
+        occluder = np.array(self._shadow_rays.to_occluder(self._light, origin + direction * packed(mi.Float64, dark)))
         return np.linalg.norm(self._way_to_light(changes.ray, dark), axis=-1) / np.maximum(occluder, TINY)
 
     def _probes(self, which: Index, steps: int) -> tuple[Any, Any]:
@@ -217,7 +218,7 @@ class Prober:
         way = self._way_to_light(changes.ray, 0.5 * (changes.low + changes.high))
         across = np.cross(way, self._rays.direction[changes.ray])
         across *= (aside / np.maximum(np.linalg.norm(across, axis=-1), TINY))[:, None]
-        row, lit = dr.arange(mi.UInt32, changes.ray.size), mi.Bool(changes.goes_dark)
+        row, lit = dr.arange(mi.UInt32, changes.ray.size), packed(mi.Bool, changes.goes_dark)
         origin, direction = self._spread_rays(changes.ray, row)
         origin += _spread3(across, row)
 
@@ -226,7 +227,8 @@ class Prober:
             as_low = self._shadow_rays.sees(self._light, origin + direction * middle) == lit
             return dr.select(as_low, middle, low), dr.select(as_low, high, middle), left - 1
 
-        state = (mi.Float64(changes.low), mi.Float64(changes.high), dr.full(mi.UInt32, halvings, changes.ray.size))
+        low, high = (packed(mi.Float64, found) for found in (changes.low, changes.high))
+        state = (low, high, dr.full(mi.UInt32, halvings, changes.ray.size))
         low, high, _ = dr.while_loop(state, lambda low, high, left: left > 0, halve)
         return np.array(0.5 * (low + high))
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scene_files import sphere, write_scene
 
+from experiments.intervals import FEWEST_ROUNDS, median_interval
 from experiments.technique_benchmark import budget
-from experiments.technique_benchmark.intervals import FEWEST_ROUNDS, median_interval
 from experiments.technique_benchmark.spacing import steps_as_dense
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.renderer import Renderer

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from experiments.metrics import measure
-from experiments.technique_benchmark import measurement, report, summary, tables
+from experiments.rounds import Times
+from experiments.technique_benchmark import report, summary, tables
 from experiments.technique_benchmark.contenders import (
     AS_DENSE,
     BASELINE,
@@ -22,7 +23,7 @@ from experiments.technique_benchmark.contenders import (
     chosen,
     published_rate,
 )
-from experiments.technique_benchmark.measurement import Measured, Result, time_in_rounds
+from experiments.technique_benchmark.measurement import Measured, Result
 from gpu_impl.device import shared_device
 from gpu_impl.memory import Footprint
 from gpu_impl.passes.scattering import COUNTERS
@@ -60,41 +61,6 @@ def test_published_rates_are_those_of_table_5_1(tmp_path: Path) -> None:
     assert published_rate(replace(isotropic, path=tmp_path / "donut_dragon.xml")) is None
 
 
-def test_rounds_run_each_once_in_an_order_of_their_own(monkeypatch) -> None:
-    order: list[tuple[str, int, bool]] = []
-
-    class Silent:
-        def __init__(self, *_: object) -> None: ...
-        def __enter__(self) -> Silent:
-            return self
-
-        def __exit__(self, *_: object) -> None: ...
-        def frame_time(self, technique: object, number: int, clock: object = None) -> float:
-            order.append((str(technique), number, clock is not None))
-            return 100.0 * number + len(str(technique))
-
-    class Clock:
-        def __init__(self, *_: object) -> None: ...
-        def milliseconds(self) -> dict[str, float]:
-            return {"surface": 2.0}
-
-    monkeypatch.setattr(measurement, "Renderer", Silent)
-    monkeypatch.setattr(measurement, "PassClock", Clock)
-    names = {name: name for name in ("a", "bb", "ccc", "dddd")}
-    found = time_in_rounds(None, None, names, 8, lambda _: None)
-    rounds = [order[8 * n : 8 * n + 8] for n in range(9)]
-    for number, one in enumerate(rounds):
-        assert {frame for _, frame, _ in one} == {number}
-        # without a clock, then with one, and in every other round the other way round
-        assert {clocked for _, _, clocked in one[::2]} == {number % 2 == 1}
-        assert [name for name, _, clocked in one if clocked] == [name for name, _, clocked in one if not clocked]
-        assert sorted(name for name, _, clocked in one if clocked) == sorted(names)
-    assert len({tuple(name for name, _, _ in one) for one in rounds}) > 5
-    # the first round is not among them
-    np.testing.assert_array_equal(found["bb"]["milliseconds"], 100.0 * np.arange(1, 9) + 2)
-    np.testing.assert_array_equal(found["bb"]["passes"]["surface"], np.full(8, 2.0))
-
-
 def made_up(times: dict[str, np.ndarray], errors: dict[str, tuple[float, float]] | None = None) -> Result:
     """A result of given times and errors, all else invented."""
     reference = np.ones((4, 4, 3))
@@ -112,9 +78,7 @@ def made_up(times: dict[str, np.ndarray], errors: dict[str, tuple[float, float]]
             footprint=Footprint(10, 7.0, 2_000_000, 30, 4.0, 5.0),
             counts=dict.fromkeys(COUNTERS, 1.5),
             rays=16,
-            milliseconds=times[one.name],
-            clocked=1.1 * times[one.name],
-            passes={"scattering": 0.5 * times[one.name]},
+            times=Times(times[one.name], 1.1 * times[one.name], {"scattering": 0.5 * times[one.name]}),
         )
     scene = load("sphere", size=(4, 4))
     return Result(scene, estimate_reference(scene, Goal(0.5)), measured, "wall clock around glFinish")

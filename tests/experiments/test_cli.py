@@ -122,7 +122,7 @@ def test_every_setting_of_a_technique_is_an_option() -> None:
 def test_compare_says_which_meshes_are_stand_ins(airlight, monkeypatch: pytest.MonkeyPatch) -> None:
     write_exr(Path("r.exr"), {"composite": np.ones((4, 6, 3), np.float32)}, {"stand_ins": "dragon.ply"})
     notes = []
-    monkeypatch.setattr("experiments.compare.write_sheet", lambda *arguments: notes.append(arguments[-1]))
+    monkeypatch.setattr("experiments.compare.write_sheets", lambda *arguments: notes.append(arguments[-2]))
     assert airlight("compare", picture("t.exr"), "r.exr", "--heatmap", "h.png").code == 0
     assert notes == ["stand-in for dragon.ply"]
 

@@ -1,4 +1,4 @@
-"""Measurements that do what drivers do on bad days; registered by importing this, in dask's workers by preloading it."""
+"""Measurements that do what drivers do on bad days; importing this registers them, and dask's workers preload it."""
 
 from __future__ import annotations
 
