@@ -9,13 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from experiments.accuracy.study import LIMITS, SHADOW_MAP_LADDER, STEPS_LADDER, Row
+from experiments.palette import OKABE_ITO
 from scenes.replacing import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-# Okabe and Ito's colours, which colour-blind people can tell apart; an eighth scene has the first one's
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 
 
 def draw_figure(path: Path, rows: Sequence[Row], below: str) -> None:
@@ -48,7 +46,7 @@ def draw_figure(path: Path, rows: Sequence[Row], below: str) -> None:
 
 def _curves(panel: Axes, rows: Sequence[Row], along: str, fixed: str, value: int) -> None:
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
-    for scene, colour in zip(scenes, cycle(COLOURS), strict=False):
+    for scene, colour in zip(scenes, cycle(OKABE_ITO), strict=False):
         mine = sorted(
             (int(row[along]), row["rel_50"], row["rel_95"])
             for row in rows

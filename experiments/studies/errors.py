@@ -7,11 +7,10 @@ from itertools import cycle
 
 import polars
 
+from experiments.palette import OKABE_ITO
 from experiments.studies import Plot, Study
 from experiments.technique_label import technique_label
 
-# Okabe and Ito's colours, which colour-blind people can tell apart
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 # bars are read one by one; a grid of hundreds has a study of its own
 MOST_BARS = 40
 
@@ -28,7 +27,7 @@ def plots(table: polars.DataFrame) -> Iterator[Plot]:
     width = 0.8 / len(names)
     figure = Figure(figsize=(max(5.0, 0.35 * len(rows) + 2.5), 3.4), dpi=110, layout="constrained")
     panel = figure.subplots()
-    for number, (name, colour) in enumerate(zip(names, cycle(COLOURS), strict=False)):
+    for number, (name, colour) in enumerate(zip(names, cycle(OKABE_ITO), strict=False)):
         mine = [row for row in rows if _label(row) == name]
         at = [groups.index(_scene(row)) + (number - (len(names) - 1) / 2) * width for row in mine]
         panel.bar(at, [row["scattering.rel_95"] for row in mine], 0.9 * width, color=colour, label=name)

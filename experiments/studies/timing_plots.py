@@ -10,6 +10,7 @@ import numpy as np
 import polars
 
 from experiments.measurements.timing import pass_column
+from experiments.palette import OKABE_ITO
 from experiments.studies import Plot
 from experiments.studies.cells import Row, label, values_of
 from experiments.studies.timing_growth import AXES, Axis, along
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Okabe and Ito's, which colour-blind people can tell apart; with the marks there are 56 pairs
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 MARKS = "os^vDxP*"
 
 
@@ -159,7 +158,7 @@ def _middle(axis: Axis, line: Sequence[Row], x: float, of_passes: bool) -> float
 
 def _styles(names: Iterable[str]) -> dict[str, tuple[str, str]]:
     """A colour and a mark for each name."""
-    return dict(zip(dict.fromkeys(names), zip(cycle(COLOURS), cycle(MARKS), strict=False), strict=False))
+    return dict(zip(dict.fromkeys(names), zip(cycle(OKABE_ITO), cycle(MARKS), strict=False), strict=False))
 
 
 def _plain_ticks(panel: Axes, places: Sequence[float]) -> None:
