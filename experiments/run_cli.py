@@ -61,14 +61,22 @@ def run(
     # says which Mitsuba serves before anything is computed
     announce_variant()
     from experiments.run.cluster import cluster
-    from experiments.run.folder import begin_run, digest_of, resume_run
-    from experiments.run.suite_run import Plan, SuiteRun, check_scenes
+    from experiments.run.folder import begin_run, digest_of, finish_run, resume_run
+    from experiments.run.rows import finished
+    from experiments.run.scenes_of import look_at_scenes
+    from experiments.run.suite_run import Plan, SuiteRun
 
-    for notice in check_scenes(cases):
+    seen = look_at_scenes(cases)
+    for notice in seen.notices:
         warn(notice)
-    digest = digest_of(loaded, cases)
+    digest = digest_of(loaded, cases, seen.digests)
     command = shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
-    contents = {"command": command, "study": loaded.study, "contents": loaded.model_dump(mode="json")}
+    contents = {
+        "command": command,
+        "study": loaded.study,
+        "cases": len(cases),
+        "contents": loaded.model_dump(mode="json"),
+    }
     if resume:
         folder = resume_run(resume, name, digest)
     else:
@@ -82,6 +90,9 @@ def run(
         from experiments.report import write_report
 
         report = write_report(folder.path) if rows else None
+        # not before the report is there: the same command would begin anew
+        if len(rows) == len(cases) and all(map(finished, rows)):
+            finish_run(folder)
     except KeyboardInterrupt:
         warn(f"Stopped. What is finished is kept in {folder.path}; the same command goes on from there.")
         raise typer.Exit(130) from None

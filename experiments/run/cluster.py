@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import signal
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -17,7 +16,8 @@ from scenes.errors import InputError
 # a worker has it once; a task of a suite with timings holds it, so that a machine whose one worker offers it runs
 # nothing of ours beside a timing
 QUIET = "airlight_quiet"
-CONNECT_SECONDS = 10
+CONNECT_SECONDS = 5
+WORKER = "dask worker ADDRESS --nthreads 1"
 SETTINGS: dict[str, Any] = {
     # a case that ends its worker is not tried on another: it would end that one too
     "distributed.scheduler.allowed-failures": 0,
@@ -55,10 +55,7 @@ def cluster(scheduler: str | None) -> Iterator[Client]:
         with client:
             yield client
         return
-    with (
-        tempfile.TemporaryDirectory(prefix="airlight-", ignore_cleanup_errors=True) as scratch,
-        dask.config.set({**SETTINGS, "temporary-directory": scratch}),
-    ):
+    with dask.config.set(SETTINGS):
         with _interrupts_blocked():
             own = _own_cluster()
         with own, Client(own) as client:
@@ -101,17 +98,22 @@ def slots(client: Client, quiet: bool) -> int:
     Raises
     ------
     InputError
-        There is no worker, or a quiet one is asked for and none says that it is.
+        There is no worker, one cannot hold OpenGL's context or cannot be ended where it hangs, or a quiet one is asked
+        for and none says that it is.
     """
-    workers = client.scheduler_info(n_workers=-1)["workers"].values()
+    workers = client.scheduler_info(n_workers=-1)["workers"]
     if not workers:
-        raise InputError("The cluster has no worker; start one on each machine: dask worker ADDRESS --nthreads 1.")
+        raise InputError(f"The cluster has no worker; start one on each machine: {WORKER}.")
+    for address, worker in workers.items():
+        if worker["nthreads"] != 1 or not worker.get("nanny"):
+            why = "has several threads" if worker["nthreads"] != 1 else "has no nanny that could end it where it hangs"
+            raise InputError(f"The cluster's worker {address} {why}; start it with {WORKER}.")
     if not quiet:
-        return sum(worker["nthreads"] for worker in workers)
-    found = sum(1 for worker in workers if worker["resources"].get(QUIET))
+        return len(workers)
+    found = sum(1 for worker in workers.values() if worker["resources"].get(QUIET))
     if not found:
         raise InputError(
             "The suite has timings, and no worker of the cluster says that nothing runs beside it: start one on each "
-            f"machine with dask worker ADDRESS --nthreads 1 --resources {QUIET}=1."
+            f"machine with {WORKER} --resources {QUIET}=1."
         )
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fcntl
+import glob
 import hashlib
 import json
 import os
@@ -27,8 +28,8 @@ FORMAT = 1
 RUN, CASES, LOCK = "run.json", "cases", ".lock"
 
 
-class FolderError(InputError):
-    """The folder of a run cannot be written: no case of it can be kept."""
+class RunError(InputError):
+    """No case of a run can be measured or kept: its folder takes no more, or its workers are not airlight's."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,11 @@ class RunFolder:
         table = table.with_columns(polars.col(polars.Null).cast(polars.String))
         for ending, write in ((".csv", table.write_csv), (".parquet", table.write_parquet)):
             with replacing(self.path / f"results{ending}") as beside:
-                write(beside)
+                try:
+                    write(beside)
+                except polars.exceptions.PolarsError as error:
+                    # what polars makes of a full disk
+                    raise OSError(str(error)) from None
 
     def close(self) -> None:
         """Let others go on with the run."""
@@ -90,7 +95,7 @@ def begin_run(parent: Path, name: str, digest: str, contents: Contents, fresh: b
     check_name(parent.absolute())
     make_folder(parent, "choose another --out")
     notice = ""
-    for path in sorted(parent.glob(f"{name}-*"), reverse=True) if not fresh else []:
+    for path in sorted(parent.glob(f"{glob.escape(name)}-*"), reverse=True) if not fresh else []:
         record = _read(path / RUN)
         if not record or record.get("digest") != digest or record.get("finished"):
             continue
@@ -151,16 +156,21 @@ def keep_row(folder: Path, row: Row) -> None:
 
     Raises
     ------
-    FolderError
+    RunError
         It cannot be written.
     """
     _write(folder / CASES / f"{row['case']}.json", row)
 
 
-def digest_of(suite: Suite, cases: Sequence[Case]) -> str:
-    """Hash of everything that a suite says, and of which of its cases are to run."""
-    told = suite.model_dump_json() + "\0".join(case.name for case in cases)
-    return hashlib.sha256(told.encode()).hexdigest()
+def digest_of(suite: Suite, cases: Sequence[Case], scenes: Sequence[str]) -> str:
+    """Hash of everything that a suite says, of which of its cases are to run, and of what their scenes hold.
+
+    Parameters
+    ----------
+    scenes : digests of the scenes, their meshes and pictures, and of committed references
+    """
+    told = [suite.model_dump_json(), *(case.name for case in cases), *scenes]
+    return hashlib.sha256("\0".join(told).encode()).hexdigest()
 
 
 @cache
@@ -247,7 +257,7 @@ def _write(path: Path, found: dict[str, Any]) -> None:
         with replacing(path, "make room there, or choose another --out; what is finished is kept") as beside:
             beside.write_text(json.dumps(found, indent=1, default=_plain) + "\n", encoding="utf-8")
     except InputError as error:
-        raise FolderError(str(error)) from None
+        raise RunError(str(error)) from None
 
 
 def _plain(value: Any) -> Any:

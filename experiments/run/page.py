@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from pathlib import Path
+from typing import Any
 
 import polars
 
@@ -18,8 +19,9 @@ PAGE = """# {title}
 {made}
 
 {text}
+
 {plots}
-[results.csv](results.csv) has every column of all {count} cases.
+[results.csv](results.csv) has every column of {count}.
 """
 
 
@@ -34,9 +36,9 @@ def read_table(folder: Path) -> polars.DataFrame:
     read_record(folder)
     path = folder / "results.parquet"
     try:
-        return polars.read_parquet(path)
+        return polars.read_parquet(path, glob=False)
     except (OSError, polars.exceptions.PolarsError):
-        raise InputError(f"{path} is missing or damaged: the same `airlight run` again writes it.") from None
+        raise InputError(f"{path} is missing or damaged: `airlight run SUITE --resume {folder}` writes it.") from None
 
 
 def write_page(folder: Path, out: Path) -> Path:
@@ -50,33 +52,32 @@ def write_page(folder: Path, out: Path) -> Path:
     record, table = read_record(folder), read_table(folder)
     study = find_study(record["study"])
     prepare_page(out, study.title)
-    made = made_by_run(record, table, out)
+    made = made_by_run(record, table, folder, out)
     plots = [_write_plot(out, plot, made) for plot in study.plots(table)]
     with replacing(out / "results.csv") as beside:
         table.write_csv(beside)
-    text = PAGE.format(title=study.title, made=made, text=study.text(table), plots="\n".join(plots), count=len(table))
+    total = record.get("cases", len(table))
+    count = f"all {total} cases" if len(table) == total else f"{len(table)} of {total} cases: the run was stopped"
+    text = PAGE.format(title=study.title, made=made, text=study.text(table), plots="\n".join(plots), count=count)
     with replacing(out / "README.md") as beside:
         beside.write_text(text, encoding="utf-8")
     return out / "README.md"
 
 
-def made_by_run(record: dict, table: polars.DataFrame, out: Path | None = None) -> str:
-    """Which commands made a page, when, from what and on which machine."""
+def made_by_run(record: dict[str, Any], table: polars.DataFrame, folder: Path, out: Path) -> str:
+    """Which commands made a page, when, with what and on which machine."""
     done = table.filter(table["status"] == "done")
-    renderers = ", ".join(_values(done, "gl_renderer"))
     stand_ins = sorted({name for names in _values(done, "stand_ins") for name in names.split()})
+    meshes = f"stand-ins for {', '.join(stand_ins)}" if stand_ins else "all meshes are the scenes' own"
     versions = ", ".join(f"{name} {record[name]}" for name in ("airlight", "python", "mitsuba", "drjit", "numpy"))
-    page = f"\n    airlight page {record.get('folder', 'runs/' + record['suite'] + '-...')} --out {out}" if out else ""
-    lines = [
-        f"Made on {record['begun'][:10]} at commit {record['commit']} by\n\n    {record['command']}{page}\n",
-        textwrap.fill(
-            f"with {versions}, on {renderers or 'no renderer'}; "
-            + (f"stand-ins for {', '.join(stand_ins)}" if stand_ins else "all meshes are the scenes' own")
-            + ".",
-            120,
-        ),
-    ]
-    return "\n".join(lines)
+    drawn = f", on {', '.join(_values(done, 'gl_renderer'))}; {meshes}" if len(done) else ""
+    # a page is read on other machines
+    run, to = ("..." if path.is_absolute() else str(path) for path in (folder, out))
+    return (
+        f"Made on {record['begun'][:10]} at commit {record['commit']} by\n\n"
+        f"    {record['command']}\n    airlight page {run} --out {to}\n\n"
+        + textwrap.fill(f"with {versions}{drawn}.", 120)
+    )
 
 
 def _values(table: polars.DataFrame, column: str) -> list[str]:

@@ -16,7 +16,7 @@ from experiments.measurements.shot import Shot
 from experiments.metrics import Metrics
 from experiments.pictures import write_case
 from experiments.provenance import describe_frame, describe_reference, describe_scene
-from experiments.run.folder import FolderError, keep_row
+from experiments.run.folder import RunError, code_digest, keep_row
 from experiments.run.rows import Row, identity
 from experiments.run.truth import Truth
 from experiments.sheet import summary, write_sheet
@@ -31,8 +31,8 @@ from scenes.loader import load
 from scenes.model import Scene
 from scenes.orbit import orbited
 
-# the topic under which a worker tells how far it is
-TOPIC = "airlight"
+# within which what a worker tells is on its way [s]: then its process may hang, and it is known at what
+TOLD_SECONDS = 0.02
 
 
 class Bench:
@@ -63,7 +63,6 @@ class Bench:
             The scene, its reference or the folder cannot be used.
         """
         self._case = case.name
-        self.tell({"case": case.name})
         renderer = self._ready(case)
         scene = renderer.scene
         row = identity(case) | describe_scene(scene)
@@ -80,7 +79,7 @@ class Bench:
             try:
                 _keep_pictures(keep, shot, row)
             except InputError as error:
-                raise FolderError(str(error)) from None
+                raise RunError(str(error)) from None
         return row | {"status": "done", "reason": ""}
 
     def release(self) -> None:
@@ -121,28 +120,45 @@ def load_case(case: Case) -> Scene:
     return orbited(scene, case.camera.orbit)
 
 
+def topic(folder: str) -> str:
+    """The topic under which workers tell how far they are with a run."""
+    return f"airlight {folder}"
+
+
 _bench: Bench | None = None
 
 
-def run_case(case: Case, folder: str, stands_for: Row) -> Row:
+def run_case(case: Case, folder: str, code: str, stands_for: Row) -> Row:
     """Run one case in a worker's process and keep its row; the task that is handed to dask.
 
-    Whatever goes wrong with the case becomes a row of status "failed". What the folder cannot take is raised: no other
-    case could be kept either.
+    Whatever goes wrong with the case becomes a row of status "failed". What would go wrong with every case is raised.
 
     Parameters
     ----------
     folder : of the run, which this machine must see too
+    code : digest of the program that asks; see `code_digest`
     stands_for : columns of every row, such as the command that runs the case alone
+
+    Raises
+    ------
+    RunError
+        The folder takes no more, or the worker has another airlight.
     """
     global _bench
     worker = get_worker()
-    _bench = _bench or Bench(lambda event: worker.log_event(TOPIC, event | {"worker": worker.address}))
+    if code_digest() != code:
+        raise RunError(
+            f"The worker {worker.address} has other sources of airlight than this program; bring it up to date."
+        )
+    _bench = _bench or Bench()
+    _bench.tell = lambda event: worker.log_event(topic(folder), event | {"worker": worker.address})
+    _bench.tell({"case": case.name})
+    time.sleep(TOLD_SECONDS)
     begin = time.perf_counter()
     row: Row
     try:
         row = _bench.measure(case, Path(folder) if case.pictures != "none" else None)
-    except FolderError:
+    except RunError:
         raise
     except Exception as error:
         _bench.release()

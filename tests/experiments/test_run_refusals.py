@@ -5,13 +5,18 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import polars
 import pytest
 from distributed import LocalCluster
 
 from experiments.gate.references import load_reference
 from experiments.measurements import Measurement, find_measurement
 from experiments.run import folder as run_folder
-from experiments.run.cluster import QUIET
+from experiments.run.cluster import QUIET, slots
+from experiments.run.folder import digest_of
+from experiments.run.scenes_of import look_at_scenes
+from experiments.suite import cases_of, load_suite
+from scenes.catalogue import FOLDER
 from scenes.errors import InputError
 from scenes.loader import load
 
@@ -100,6 +105,47 @@ def test_a_full_disk_ends_the_run_with_one_sentence(airlight, suite: Path, tmp_p
     said = refused(airlight("run", suite, "--out", tmp_path / "runs"))
     assert "empty-Weng2010.json cannot be written" in said
     assert "what is finished is kept" in said
+
+
+def test_a_table_that_does_not_fit_is_said_in_the_same_way(finished: Path, monkeypatch) -> None:
+    def full(self, path) -> None:
+        raise polars.exceptions.ComputeError("parquet: no space left")
+
+    monkeypatch.setattr(polars.DataFrame, "write_parquet", full)
+    folder = run_folder.RunFolder(finished, {})
+    with pytest.raises(InputError, match=r"results\.parquet cannot be written .parquet: no space left"):
+        folder.write_tables(list(folder.rows().values()))
+
+
+def test_a_scene_that_has_changed_makes_another_run(airlight, tmp_path: Path) -> None:
+    scene = tmp_path / "mine.xml"
+    scene.write_text((FOLDER / "empty.xml").read_text())
+    (tmp_path / "phase").symlink_to(FOLDER / "phase")
+    suite = tmp_path / "own.toml"
+    suite.write_text(SUITE.replace('"empty"', '"mine.xml"'))
+    seen = []
+    for text in (scene.read_text(), scene.read_text().replace('value="0.12"', 'value="0.9"').replace('0.1"', '0.2"')):
+        scene.write_text(text)
+        cases = cases_of(load_suite(str(suite))[1])
+        seen.append(digest_of(load_suite(str(suite))[1], cases, look_at_scenes(cases).digests))
+    assert seen[0] != seen[1]
+
+
+@pytest.mark.parametrize(
+    ("worker", "words"),
+    [
+        ({"nthreads": 4, "nanny": "tcp://x", "resources": {}}, "has several threads; start it with dask worker"),
+        ({"nthreads": 1, "nanny": None, "resources": {}}, "has no nanny that could end it where it hangs"),
+    ],
+)
+def test_a_worker_that_cannot_serve_is_refused(worker: dict, words: str) -> None:
+    class Cluster:
+        def scheduler_info(self, n_workers: int) -> dict:
+            return {"workers": {"tcp://here": worker}}
+
+    with pytest.raises(InputError) as caught:
+        slots(Cluster(), quiet=False)
+    assert words in str(caught.value)
 
 
 def test_nobody_answers_at_the_schedulers_address(airlight, suite: Path) -> None:
