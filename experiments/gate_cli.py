@@ -34,7 +34,10 @@ def gate(
     update: Annotated[
         bool, typer.Option("--update", help="Measure the limits anew, write them and say what changed.")
     ] = False,
-    runs: Annotated[int, typer.Option(min=1, help="Of --update: runs on an idle machine, and on a loaded one.")] = 10,
+    runs: Annotated[
+        int,
+        typer.Option(min=1, help="Of --update: runs on an idle machine, and on a loaded one; fewer than 10 to try it."),
+    ] = 10,
     mutations: Annotated[
         bool, typer.Option("--mutations", help="Spoil the shaders on purpose: the gate must notice it.")
     ] = False,
@@ -65,13 +68,18 @@ def gate(
 
 def _gate(cases: Sequence[Case], check: Literal["one", "all"], seed: int, out: Path, junit: Path | None) -> None:
     from experiments.console import console, notices, say, warn
-    from experiments.gate.gating import run_gate, write_pictures
+    from experiments.exr import check_writable
+    from experiments.gate.gating import check_folder, run_gate, write_pictures
     from experiments.gate.junit import write_junit
     from experiments.gate.limits import limits_for
     from experiments.gate.suite import gate_cases
     from experiments.gate.tables import result_table
     from experiments.run.watcher import Watcher
 
+    # better before the work than after it
+    check_folder(out)
+    if junit:
+        check_writable(junit)
     limits = limits_for(gate_cases())
     with notices.status("gate"):
         result = run_gate(cases, limits, check, seed, Watcher())
@@ -81,17 +89,28 @@ def _gate(cases: Sequence[Case], check: Literal["one", "all"], seed: int, out: P
     for verdict in result.verdicts:
         if verdict.is_better:
             say(f"Better: {verdict}; `airlight gate --update` lowers the limit.")
-    if junit:
-        write_junit(result, junit)
-    if result.passes:
-        say(f"The gate holds: {len(result.verdicts)} values of {len(cases)} cases within their limits.")
-        return
     for name, reason in result.broken.items():
         warn(f"Failed: {name}: {reason}")
     for verdict in result.failed:
         warn(f"Failed: {verdict}.")
-    if written := write_pictures(cases, result, out):
-        say(f"Pictures: {', '.join(str(path) for path in written)}, and a sheet of each")
+    if result.passes:
+        but = "" if result.estimated_anew else "; no reference was estimated anew"
+        say(f"The gate holds: {len(result.verdicts)} values of {len(cases)} cases within their limits{but}.")
+    # the verdict has been told, and its exit code stands whatever becomes of its files
+    if junit:
+        try:
+            write_junit(result, junit)
+        except InputError as error:
+            if result.passes:
+                raise
+            warn(str(error))
+    if result.passes:
+        return
+    try:
+        if written := write_pictures(cases, result, out):
+            say(f"Pictures: {', '.join(str(path) for path in written)}, and a sheet of each")
+    except InputError as error:
+        warn(str(error))
     raise typer.Exit(1)
 
 
@@ -124,16 +143,16 @@ def _mutate(cases: Sequence[Case]) -> None:
 
 
 def _update(cases: Sequence[Case], runs: int) -> None:
-    from experiments.console import console, notices, say
-    from experiments.gate.limits import PATH, read_limits, write_limits
+    from experiments.console import console, notices, say, warn
+    from experiments.gate.limits import PATH, RUNS, read_limits, write_limits
     from experiments.gate.tables import change_table
     from experiments.gate.update import changes, measure_limits, renew_references
     from gpu_impl.device import shared_device
 
     load = os.getloadavg()[0]
     with notices.status("update") as status:
-        for path in renew_references(cases, status.update):
-            say(f"Reference: {path}")
+        for path, why in renew_references(cases, secrets.randbelow(1 << 32), status.update):
+            say(f"{why}\nReference: {path}")
         new = measure_limits(cases, runs, status.update)
     try:
         old = read_limits()
@@ -143,6 +162,9 @@ def _update(cases: Sequence[Case], runs: int) -> None:
     changed = list(changes(old, new))
     # what else ran meanwhile: idle is what this command leaves idle
     told = {"runs_idle": runs, "runs_loaded": runs, "load_average_before": f"{load:.1f}"}
+    if runs < RUNS:
+        told["note"] = f"fewer runs than {RUNS}: a trial, and not to be committed"
+        warn(f"{runs} runs are a trial: limits that are committed need {RUNS}.")
     write_limits(new, told | {"gl_renderer": shared_device().info.renderer})
     if changed:
         console.print(change_table(changed))

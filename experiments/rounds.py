@@ -36,7 +36,11 @@ class Times:
 
 
 def time_in_rounds(
-    renderer: Renderer, techniques: Mapping[str, Technique], rounds: int, tell: Callable[[str], None] = lambda _: None
+    renderer: Renderer,
+    techniques: Mapping[str, Technique],
+    rounds: int,
+    tell: Callable[[str], None] = lambda _: None,
+    passes_too: bool = True,
 ) -> dict[str, Times]:
     """Time all techniques once a round, in an order drawn anew; nothing else may run meanwhile.
 
@@ -48,6 +52,7 @@ def time_in_rounds(
     techniques : by names, which need not be the techniques' own: one may run twice
     rounds : int       that count; one more is run before them
     tell : callable    told what is being done
+    passes_too : bool  False: whole frames alone, which halves the time; `clocked` and `passes` are empty
 
     Raises
     ------
@@ -62,7 +67,8 @@ def time_in_rounds(
     for number in range(rounds + 1):
         tell(f"round {number} of {rounds}")
         for name in order.permutation(list(techniques)).tolist():
-            for with_clock in (False, True) if number % 2 == 0 else (True, False):
+            both = (False, True) if number % 2 == 0 else (True, False)
+            for with_clock in both if passes_too else (False,):
                 if with_clock:
                     clocked[name].append(renderer.frame_time(techniques[name], number, clock))
                     passes[name].append(clock.milliseconds())
@@ -72,7 +78,7 @@ def time_in_rounds(
         name: Times(
             np.array(plain[name][1:]),
             np.array(clocked[name][1:]),
-            {one: np.array([found[one] for found in passes[name][1:]]) for one in passes[name][0]},
+            {one: np.array([found[one] for found in passes[name][1:]]) for one in (passes[name] or [{}])[0]},
         )
         for name in techniques
     }

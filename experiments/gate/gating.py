@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -48,6 +49,11 @@ class Result:
         return [verdict for verdict in self.verdicts if not verdict.passes]
 
     @property
+    def estimated_anew(self) -> bool:
+        """Whether this machine could estimate a reference of the kind that is committed."""
+        return any(one.comparison is not None for one in self.agreements)
+
+    @property
     def passes(self) -> bool:
         """Whether nothing failed."""
         return not (self.failed or self.broken) and all(one.agrees for one in self.agreements)
@@ -84,8 +90,15 @@ def _rows(cases: Sequence[Case], watcher: Watcher) -> list[Row]:
             folder.close()
 
 
+def check_folder(folder: Path) -> None:
+    """Raise InputError where a folder could not be made, or not be written to; it is not made."""
+    nearest = next(one for one in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(one))
+    if not (nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)):
+        raise InputError(f"{folder} cannot be a folder for pictures: {nearest} is in the way; choose another --out.")
+
+
 def write_pictures(cases: Sequence[Case], result: Result, folder: Path) -> list[Path]:
-    """Draw the cases that failed once more, each as an EXR and a sheet beside its reference.
+    """Draw the cases that failed once more, each as an EXR and a sheet beside its reference; makes no folder for none.
 
     Raises
     ------
@@ -93,6 +106,8 @@ def write_pictures(cases: Sequence[Case], result: Result, folder: Path) -> list[
         The folder cannot be written.
     """
     names = {verdict.case for verdict in result.failed}
+    if not names:
+        return []
     make_folder(folder, "choose another --out")
     bench, written = Bench(), []
     try:

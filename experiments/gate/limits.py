@@ -29,6 +29,10 @@ PATH = Path(__file__).parent / "limits.toml"
 MARGIN = 2.0
 # llvmpipe's exp alone is off by up to 3.5e-6, which moves a sum of light by 7.3e-6 (measured); almost three times that
 FLOOR = 2e-5
+# that a committed file is measured with, on an idle machine and on a loaded one
+RUNS = 10
+# relative, by which a number may differ from another only in how both are written
+WRITTEN = 1e-6
 UPDATE = "`airlight gate --update` writes it anew"
 
 
@@ -80,7 +84,11 @@ def limits_of(runs: Sequence[Values], perturbed: Sequence[Values]) -> Limits:
 def _limit(runs: Sequence[float], perturbed: Sequence[float]) -> Limit:
     repeats = max(runs) - min(runs)
     rounding = max(abs(value - runs[0]) for value in perturbed)
-    return Limit(runs[0], repeats, rounding, max(FLOOR, MARGIN * max(repeats, rounding)))
+    return Limit(runs[0], repeats, rounding, _margin(repeats, rounding))
+
+
+def _margin(repeats: float, rounding: float) -> float:
+    return max(FLOOR, MARGIN * max(repeats, rounding))
 
 
 def write_limits(limits: Limits, told: Mapping[str, Any]) -> None:
@@ -123,7 +131,10 @@ def read_limits() -> Limits:
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         raise InputError(f"{PATH} cannot be read as limits: restore it from the repository, or {UPDATE}.") from None
     if not all(_is_whole(one) for metrics in limits.values() for one in metrics.values()):
-        raise InputError(f"{PATH} holds a limit that is no number: restore it from the repository, or {UPDATE}.")
+        raise InputError(
+            f"{PATH} holds a limit that is no number, or a margin that is not what its row's numbers give: restore it "
+            f"from the repository, or {UPDATE}."
+        )
     return limits
 
 
@@ -147,4 +158,8 @@ def limits_for(cases: Sequence[Case]) -> Limits:
 
 def _is_whole(limit: Limit) -> bool:
     numbers = vars(limit).values()
-    return all(isinstance(one, float) and math.isfinite(one) for one in numbers) and limit.margin > 0
+    if not all(isinstance(one, float) and math.isfinite(one) for one in numbers):
+        return False
+    # nobody widens a margin by hand
+    rule = _margin(limit.repeats, limit.rounding)
+    return min(limit.repeats, limit.rounding) >= 0 and abs(limit.margin - rule) <= WRITTEN * rule

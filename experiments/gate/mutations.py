@@ -90,6 +90,31 @@ MUTATIONS = (
         "every cell of the lattice is interpolated, whatever its corners see",
         (Edit("upsampling/bilateral.glsl", "if (agree(there))", "if (true)"),),
     ),
+    Mutation(
+        "grey samples",
+        "point samples in fog that takes of each colour what it takes of red",
+        (Edit("airlight/riemann.glsl", "exp(-sigma_t * (t + leg))", "exp(-sigma_t.xxx * (t + leg))"),),
+    ),
+    Mutation(
+        "grey models",
+        "models that work on a channel at a time get the red one's coefficient for green",
+        (Edit("contract.glsl", "dt, sigma_t.y).y", "dt, sigma_t.x).y"),),
+    ),
+    Mutation(
+        "red for blue",
+        "the lights' colours the other way round, for point samples",
+        (Edit("airlight/riemann.glsl", "light.intensity *", "light.intensity.bgr *"),),
+    ),
+    Mutation(
+        "half a sun",
+        "point samples of parallel light at half its strength",
+        (Edit("airlight/riemann.glsl", "(DIRECTIONAL == 1 ? 1.0 : d2)", "(DIRECTIONAL == 1 ? 2.0 : d2)"),),
+    ),
+    Mutation(
+        "unweighted cut",
+        "a shifted march's cut step counts for what is left of it",
+        (Edit("visibility/parts/march.glsl", "1.0 / part", "1.0"),),
+    ),
     _subtle("g + 5 %", "of 0.6", Edit("phase/hg.glsl", "uniform float g;", "uniform float g;\n#define g (1.05 * g)")),
     _subtle(
         "sigma_t + 2 %",

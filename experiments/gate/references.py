@@ -12,19 +12,21 @@ import hashlib
 import json
 from dataclasses import asdict
 from importlib.metadata import version
+from math import ceil
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
 
 from experiments.provenance import commit
 from reference.agreement.witnesses import EquiangularWitness
-from reference.convergence import Estimate, converge
+from reference.convergence import Estimate, StoppedBy, converge
 from reference.estimate import Reference
-from reference.goal import Goal
+from reference.goal import FEWEST_IN_LIMIT, Goal
 from reference.integrator import mi
-from reference.moments import tiles
+from reference.moments import TILE, tiles
 from scenes.errors import InputError
 from scenes.model import Scene
 from scenes.replacing import make_folder, replacing
@@ -34,8 +36,24 @@ FORMAT = 1
 # a tenth of the least error that is gated, on most pixels
 GOAL = Goal(rel_error=0.001, time_limit=120.0)
 RENEW = "`airlight gate --update` estimates it anew"
-# in the order of their layers; a surface has no error, for the lights have no extent
-_ARRAYS = ("scattering", "surface", "error", "tile_error", "image_error", "samples")
+Arrays = dict[str, NDArray[Any]]
+_Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+
+class _Record(BaseModel):
+    """What stands beside the arrays; `made_by` may too."""
+
+    model_config = ConfigDict(strict=True, frozen=True)
+
+    recipe: dict[str, Any]
+    recipe_hash: str
+    goal: Goal
+    largest_error: _Positive
+    passes: Annotated[int, Field(ge=FEWEST_IN_LIMIT)]
+    planned_for: _Positive
+    rel_error: _Positive
+    stopped_by: StoppedBy
+    seconds: _Positive
 
 
 def deciding(scene: Scene) -> dict[str, Any]:
@@ -71,9 +89,9 @@ def load_reference(folder: Path, scene: Scene) -> Reference:
     """
     path = reference_path(folder, scene)
     arrays, record = _read(path)
-    recipe, now = record["recipe"], deciding(scene)
+    recipe, now = record.recipe, deciding(scene)
     found = {key: recipe.get(key) for key in now}
-    if record["recipe_hash"] != recipe_hash(found):
+    if record.recipe_hash != recipe_hash(found):
         raise InputError(f"The committed reference {path} does not have the hash of its own recipe: {RENEW}.")
     if found != now:
         changed = ", ".join(key.replace("_", " ") for key in now if found[key] != now[key])
@@ -82,7 +100,9 @@ def load_reference(folder: Path, scene: Scene) -> Reference:
             f"The committed reference {path} is stale: its {changed} is not that of the scene {scene.name} as it is "
             f"now{meshes}; where that is meant, {RENEW}."
         )
-    return Reference(_unpacked(path, arrays, record, scene), recipe, Goal(**record["goal"]), from_cache=True)
+    if not _is_whole(arrays, scene):
+        raise _damaged(path)
+    return Reference(_unpacked(arrays, record), recipe, record.goal, from_cache=True)
 
 
 def make_reference(scene: Scene) -> Estimate:
@@ -137,45 +157,62 @@ def _planar(image: NDArray[Any], dtype: type) -> NDArray[Any]:
     return np.ascontiguousarray(np.moveaxis(image, -1, 0), dtype)
 
 
-def _read(path: Path) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
+def _damaged(path: Path) -> InputError:
+    return InputError(f"The committed reference {path} is damaged: restore it from the repository, or {RENEW}.")
+
+
+def _read(path: Path) -> tuple[Arrays, _Record]:
     if not path.is_file():
         raise InputError(f"There is no committed reference {path}: restore it from the repository, or {RENEW}.")
     try:
         with np.load(path, allow_pickle=False) as entry:
             # each member of a zip has a checksum, which is held against its bytes as it is read
-            arrays = {name: entry[name] for name in _ARRAYS}
-            record = json.loads(str(entry["record"]))
-            recipe = record["recipe"]
-        if not isinstance(recipe, dict) or "recipe_hash" not in record:
-            raise TypeError
+            arrays = {name: entry[name] for name in entry.files if name != "record"}
+            return arrays, _Record.model_validate_json(str(entry["record"]))
     except Exception:
-        # what zipfile, zlib, numpy and json raise on damaged bytes is of many types
-        raise InputError(
-            f"The committed reference {path} is damaged: restore it from the repository, or {RENEW}."
-        ) from None
-    return arrays, record
+        # what zipfile, zlib, numpy, pydantic and Goal raise on damaged bytes is of many types
+        raise _damaged(path) from None
 
 
-def _unpacked(path: Path, arrays: dict[str, NDArray[Any]], record: dict[str, Any], scene: Scene) -> Estimate:
+def _is_whole(arrays: Arrays, scene: Scene) -> bool:
+    """Whether all arrays are there, and hold what an estimate of this scene can hold."""
+    height, width = scene.camera.height, scene.camera.width
+    # a surface has no error, for the lights have no extent
+    kinds = {
+        "scattering": ("f", (3, height, width)),
+        "surface": ("f", (3, height, width)),
+        "error": ("f", (3, height, width)),
+        "tile_error": ("f", (3, ceil(height / TILE), ceil(width / TILE))),
+        "image_error": ("f", (3,)),
+        "samples": ("u", (height, width)),
+    }
+    return (
+        {name: (array.dtype.kind, array.shape) for name, array in arrays.items()} == kinds
+        and all(bool(np.isfinite(array).all() and (array >= 0).all()) for array in arrays.values())
+        and bool(arrays["samples"].all() and arrays["scattering"].any())
+    )
+
+
+def _unpacked(arrays: Arrays, record: _Record) -> Estimate:
     def image(name: str) -> NDArray[np.float64]:
         return np.ascontiguousarray(np.moveaxis(arrays[name], 0, -1), np.float64)
 
     mean = {"scattering": image("scattering"), "surface": image("surface")}
-    error = image("error") * record["largest_error"]
-    shape = (scene.camera.height, scene.camera.width, 3)
-    if any(one.shape != shape or not np.isfinite(one).all() for one in (*mean.values(), error)):
-        raise InputError(f"The committed reference {path} holds no pictures of {shape[1]} x {shape[0]}: {RENEW}.")
 
-    def with_surface(of_scattering: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    def with_surface(of_scattering: NDArray[Any]) -> Arrays:
         return {"scattering": of_scattering, "surface": np.zeros_like(of_scattering)}
 
     return Estimate(
         mean=mean,
-        standard_error=with_surface(error),
+        standard_error=with_surface(image("error") * record.largest_error),
         tile_mean={layer: tiles(one) for layer, one in mean.items()},
         tile_error=with_surface(image("tile_error")),
         image_mean={layer: one.mean(axis=(0, 1)) for layer, one in mean.items()},
         image_error=with_surface(arrays["image_error"]),
         samples=arrays["samples"].astype(np.uint32),
-        **{key: record[key] for key in ("passes", "planned_for", "rel_error", "stopped_by", "seconds")},
+        passes=record.passes,
+        planned_for=record.planned_for,
+        rel_error=record.rel_error,
+        stopped_by=record.stopped_by,
+        seconds=record.seconds,
     )

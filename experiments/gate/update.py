@@ -1,22 +1,22 @@
-"""The limits measured anew, and the references that are missing, damaged or stale."""
+"""The limits measured anew, and the references that cannot be used as they are."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from random import Random
 
 from experiments.gate import suite
-from experiments.gate.limits import Limit, Limits, limits_of
-from experiments.gate.references import load_reference, make_reference, write_reference
+from experiments.gate.agreement import FIRST_SEED, LAST_SEED, check_reference
+from experiments.gate.limits import WRITTEN, Limit, Limits, limits_of
+from experiments.gate.references import make_reference, write_reference
 from experiments.gate.repeats import repeated_values
 from experiments.gate.rounding import perturbed_values
 from experiments.suite import Case
 from scenes.errors import InputError
 
 Tell = Callable[[str], None]
-# of a value, by which it may differ from a committed one only in how it is written
-WRITTEN = 1e-6
 
 
 @dataclass(frozen=True)
@@ -29,16 +29,27 @@ class Change:
     new: Limit | None
 
 
-def renew_references(cases: Sequence[Case], tell: Tell) -> list[Path]:
-    """Estimate and write the references that cannot be used as they are; which they were."""
-    written = []
+def renew_references(cases: Sequence[Case], seed: int, tell: Tell) -> Iterator[tuple[Path, str]]:
+    """Estimate and write the references that are missing, damaged, stale, or no longer agree with Mitsuba.
+
+    Parameters
+    ----------
+    seed : of the estimates that they are held against
+
+    Yields
+    ------
+    path, why : Path, str    of each that was written, and a sentence
+    """
+    random = Random(seed)
     for name, scene in suite.gate_scenes(cases).items():
+        tell(f"reference {name}")
         try:
-            load_reference(suite.REFERENCES, scene)
-        except InputError:
-            tell(f"reference {name}")
-            written.append(write_reference(suite.REFERENCES, scene, make_reference(scene)))
-    return written
+            found = check_reference(suite.REFERENCES, scene, random.randrange(FIRST_SEED, LAST_SEED))
+            why = "" if found.agrees else f"{found}."
+        except InputError as error:
+            why = str(error)
+        if why:
+            yield write_reference(suite.REFERENCES, scene, make_reference(scene)), why
 
 
 def measure_limits(cases: Sequence[Case], runs: int, tell: Tell) -> Limits:

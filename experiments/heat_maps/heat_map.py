@@ -23,7 +23,7 @@ LINEAR_PIECE = 1e-3
 # Errors below so many standard errors of the reference are marked as noise: of pixels without any error, 0.27 % stick
 # out of Gaussian noise.
 NOISE = 3.0
-# radiance at this percentile of the reference is shown just below white
+# radiance at this percentile of the reference's lit pixels is shown just below white
 EXPOSURE_PERCENTILE = 99.0
 PERCENT = 100.0
 
@@ -41,7 +41,7 @@ class HeatMap:
     unit : str                "relative": over max(r, floor) [%], the floor as in `Metrics`; "radiance": as it is
     logarithmic : bool        beyond a linear piece of a thousandth of the scale
     limit : float | None      the scale's end, in the unit; None: 100 % (logarithmic) or 20 % (linear), of the pixel or
-                              of white: the reference's 99th percentile, rounded up to 1, 2 or 5 times a power of 10
+                              of white: `white` of the reference, rounded up to 1, 2 or 5 times a power of 10
     colours : str             "even" or "hue"
 
     Raises
@@ -115,9 +115,12 @@ def luminance(image: Image) -> NDArray[np.float64]:
 
 
 def white(reference: Image) -> float:
-    """Radiance that is shown as white; 1 for a black picture."""
-    found = float(np.percentile(reference, EXPOSURE_PERCENTILE))
-    return found if found > 0 else 1.0
+    """Radiance that is shown as white, (H, W, 3) to a number: a percentile over the lit pixels; 1 for a black picture.
+
+    Over all pixels it would be 0 where a beam lights less than 1 % of them.
+    """
+    lit = reference[(reference > 0).any(axis=-1)]
+    return float(np.percentile(lit, EXPOSURE_PERCENTILE)) if lit.size else 1.0
 
 
 def typical_noise(noise: NDArray[np.float64]) -> float:

@@ -12,6 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 if TYPE_CHECKING:
     from matplotlib.colors import Normalize
 
+# of a scale's end: smaller powers of ten are not normal numbers, and some are none
+LEAST = 1e-300
+
 
 @dataclass(frozen=True)
 class Scale:
@@ -78,7 +81,8 @@ class Scale:
 
 
 def round_up(value: float) -> float:
-    """The next number of 1, 2 or 5 times a power of ten, not below `value`."""
+    """The next number of 1, 2 or 5 times a power of ten, not below `value`, nor below `LEAST`."""
+    value = max(value, LEAST)
     power = 10.0 ** math.floor(math.log10(value))
     # 1.0000000001: what division leaves of 1, 2 or 5 is not taken to the next
     return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if value <= 1.0000000001 * step * power)

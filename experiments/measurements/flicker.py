@@ -37,10 +37,12 @@ class Flicker:
 
     Attributes
     ----------
-    rms : float       root of the mean square, less that of the reference's own noise [relative]
-    high : float      95th percentile of the absolute value, the reference's noise with it [relative]
+    rms : float       root of the mean square [relative]
+    high : float      95th percentile of the absolute value [relative]
     moved : float     root mean square of the truth's own change, (r' - r) over the same [relative]
-    noise : float     root mean square of what the reference's standard error makes of it [relative]
+    noise : float     root mean square that the reference's standard errors would add to `rms` if those of two frames
+                      were independent; they add far less, since all frames are sampled with the same random numbers
+                      and err alike. Nothing is taken away for it. [relative]
     """
 
     rms: float
@@ -61,11 +63,11 @@ def flicker_of(sights: Iterable[Sight]) -> Flicker | None:
         scale = np.maximum((one.truth + two.truth) / 2, floor)[seen]
         moves.append((two.truth - one.truth)[seen] / scale)
         values.append((two.test - one.test)[seen] / scale - moves[-1])
-        # frames of a reference are estimated one by one, so that their errors are independent
+        # as if independent: an upper bound, for the passes of every frame have the same seeds
         noises.append(np.hypot(one.standard_error, two.standard_error)[seen] / scale)
     square, moved, noise = (float(np.mean(np.concatenate(found) ** 2)) for found in (values, moves, noises))
     return Flicker(
-        rms=float(np.sqrt(max(0.0, square - noise))),
+        rms=float(np.sqrt(square)),
         high=float(np.percentile(np.abs(np.concatenate(values)), 95)),
         moved=float(np.sqrt(moved)),
         noise=float(np.sqrt(noise)),

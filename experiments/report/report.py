@@ -60,7 +60,7 @@ def write_report(folder: Path) -> Path:
         The folder is no run's, has no table yet, or cannot be written.
     """
     record = read_record(folder)
-    table = _table(folder / "results.parquet")
+    table = _table(folder)
     rows = table.to_dicts()
     study = find_study(record["study"])
     done = [row for row in rows if row["status"] == "done"]
@@ -68,6 +68,7 @@ def write_report(folder: Path) -> Path:
     page = _environment().get_template("report.html.j2").render(
         record={said: record[key] for key, said in RECORDED.items() if record.get(key)},
         makers={key: made for key in MAKERS if (made := _values(rows, key))},
+        part=_part(record, len(rows)),
         counts=Counter(row["status"] for row in rows),
         failed=[row for row in rows if row["status"] == "failed"],
         refused=_by_reason(rows),
@@ -90,13 +91,28 @@ def write_report(folder: Path) -> Path:
     return path
 
 
-def _table(path: Path) -> Any:
+def _table(folder: Path) -> Any:
     import polars
 
+    path = folder / "results.parquet"
     try:
-        return polars.read_parquet(path)
+        return polars.read_parquet(path, glob=False)
     except (OSError, polars.exceptions.PolarsError):
-        raise InputError(f"{path} is not a table that can be read; run the suite again to write it.") from None
+        raise InputError(
+            f"{path} is not a table that can be read: `airlight run SUITE --resume {folder}` writes it again."
+        ) from None
+
+
+def _part(record: dict[str, Any], count: int) -> str:
+    """What a page of some of a run's cases has to say first; empty where it has all, failed ones among them.
+
+    A run is finished only after its report is written, so that `finished` is missing in the report of a whole one.
+    """
+    total = record.get("cases")
+    if total is None:
+        # begun by a version that did not count
+        return "" if record.get("finished") else f"{count} cases; the run was stopped or is going on."
+    return f"{count} of {total} cases; the run was stopped or is going on." if count < total else ""
 
 
 def _environment() -> Environment:

@@ -9,6 +9,7 @@ from pathlib import Path
 from experiments.suite.schema import CameraChoice, ReferenceChoice
 from reference.convergence import Progress
 from reference.estimate import Reference, deterministic_reference, estimate_reference
+from scenes.loader import load_seen_from
 from scenes.model import Scene
 from scenes.orbit import orbited
 
@@ -37,7 +38,7 @@ class Truth:
         InputError
             It cannot be estimated; or it was to be a committed one, and that is missing or of another scene.
         """
-        key = scene.digest, scene.camera.width, scene.camera.height, choice
+        key = scene.digest, choice
         if key not in self._references:
             self._references[key] = self._find(scene, choice)
             _forget(self._references)
@@ -46,10 +47,14 @@ class Truth:
     def path(self, scene: Scene, camera: CameraChoice) -> Iterator[Scene]:
         """The scene as each frame of the path sees it, the first as it is given."""
         yield scene
+        size = scene.camera.width, scene.camera.height
+        own: Scene | None = None
         for angle in camera.angles()[1:]:
-            key = scene.digest, scene.camera.width, scene.camera.height, angle
+            key = scene.digest, angle
             if key not in self._scenes:
-                self._scenes[key] = orbited(scene, angle - camera.orbit)
+                # every turn is about what the scene's own camera looks at
+                own = own or load_seen_from(scene.path, None, size, scene.parameters)
+                self._scenes[key] = orbited(own, angle)
                 _forget(self._scenes)
             yield self._scenes[key]
 

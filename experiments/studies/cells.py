@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from experiments.markdown import table
+from experiments.markdown import one_line, table
 from experiments.technique_label import technique_label
 from gpu_impl.techniques import find_technique
 
@@ -53,5 +53,5 @@ class Gaps:
 
     def table(self, headings: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
         """A Markdown table with the reasons below it, where it has cells without number."""
-        reasons = (f"- ({number}) {' '.join(reason.split())}" for reason, number in self._reasons.items())
+        reasons = (f"- ({number}) {one_line(reason)}" for reason, number in self._reasons.items())
         return "\n\n".join(filter(None, (table(headings, lines), "\n".join(reasons))))

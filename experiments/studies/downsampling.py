@@ -7,12 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 import polars
 
+from experiments.intervals import CONFIDENCE
 from experiments.markdown import table as markdown_table
 from experiments.measurements.regions import DEPTH_BEND, REACH, REGIONS, SHAFT_BEND
 from experiments.studies import Study
 from experiments.studies.cells import Gaps, Row, label, span, values_of
 from experiments.studies.downsampling_plots import plots
-from experiments.studies.power_law import CONFIDENCE, power_law
+from experiments.studies.power_law import FEWEST_POINTS, mean_power_law
 from gpu_impl.techniques import UPSAMPLINGS
 
 NO_PICTURE = "no picture has an error with every upsampling"
@@ -41,8 +42,11 @@ best's over the worst's; geometric means over phase functions and techniques.
 {scenes}"""
 GROWTH = """## How fast errors grow
 
-Exponent p of error ~ N^p over N = {spacings}, with the interval that holds it {confidence:.0%} of the time: one p for
-all of a technique's pictures and a factor for each. n counts errors that are not zero.
+Exponent p of error ~ N^p over N = {spacings}: in each scene the mean over its phase functions, sizes and cameras, and
+of these the mean over the scenes. In brackets the interval that holds the mean over all scenes like these
+{confidence:.0%} of the time, by Student's t over the scenes' exponents; behind it the least and the most of them. Where
+there is one scene, the interval is of the scatter about its own line, if errors at different N are independent, and
+says nothing of other scenes. n counts the errors that were fitted: those of pictures with {fewest} or more above zero.
 
 {table}"""
 
@@ -59,8 +63,7 @@ def text(table: polars.DataFrame) -> str:
     spacings = [value for value in values_of(rows, "downsample") if value > 1]
     if measured and spacings:
         parts.append(WINNERS.format(tie=TIE, table=_winners(measured, spacings), scenes=_by_scene(measured, spacings)))
-        listed = ", ".join(map(str, spacings))
-        parts.append(GROWTH.format(spacings=listed, confidence=CONFIDENCE, table=_growth(measured, spacings)))
+        parts.append(_growth(measured, spacings))
     return "\n\n".join(parts)
 
 
@@ -168,17 +171,21 @@ def _growth(rows: Sequence[Row], spacings: Sequence[int]) -> str:
                 behind_one = [row for row in mine if row["downsample"] in spacings]
                 cells = [_exponent(behind_one, f"{region}.{part}", gaps) for part in ("rel_50", "rel_95", "bias")]
                 lines.append([technique, region, upsample, *cells])
-    headings = ["technique", "region", "upsampling", "median", "95 %", "bias"]
-    return gaps.table(headings, lines)
+    table = gaps.table(["technique", "region", "upsampling", "median", "95 %", "bias"], lines)
+    listed = ", ".join(map(str, spacings))
+    return GROWTH.format(spacings=listed, confidence=CONFIDENCE, fewest=FEWEST_POINTS, table=table)
 
 
 def _exponent(rows: Sequence[Row], column: str, gaps: Gaps) -> str:
-    points = [(row["downsample"], row[column], picture(row)) for row in rows if (row.get(column) or 0) > 0]
+    points = [
+        (row["downsample"], row[column], row["scene"], picture(row)) for row in rows if (row.get(column) or 0) > 0
+    ]
+    if not points:
+        return gaps.because("no error above zero")
     try:
-        fit = power_law(*zip(*points, strict=True)) if points else None
+        return str(mean_power_law(*zip(*points, strict=True)))
     except ValueError as error:
         return gaps.because(f"no exponent: {error}")
-    return gaps.because("no error above zero") if fit is None else f"{fit} (n = {fit.n})"
 
 
 def _listed(names: Sequence[str], rows: Sequence[Row]) -> str:

@@ -10,6 +10,7 @@ import polars
 from experiments.intervals import CONFIDENCE
 from experiments.studies import Study
 from experiments.studies.cells import Gaps, Row, label, span, values_of
+from experiments.studies.power_law import FEWEST_POINTS, LEAST_SPAN
 from experiments.studies.timing_growth import growth_table
 from experiments.studies.timing_plots import plots
 from gpu_impl.timing import WALL_CLOCK
@@ -40,9 +41,12 @@ FOUND = """{faster} of {all} cases are faster than the baseline by their interva
 to be told from it. The least ratio is {least}: {technique} in {scene}, {phase}, N = {downsample}."""
 GROWTH = """## How cost grows
 
-Exponent p of ms ~ x^p, with the interval that holds it {confidence:.0%} of the time: one p for all that a line joins,
-and a factor for each scene and phase function. n is how many cases are in it. An exponent is a mean over the range
-that was measured: a frame has parts that do not grow.
+Exponent p of ms ~ x^p: in each scene the mean over its phase functions and sizes, and of these the mean over the
+scenes. In brackets the interval that holds the mean over all scenes like these {confidence:.0%} of the time, by
+Student's t over the scenes' exponents; behind it the least and the most of them. Where there is one scene, the interval
+is of the scatter about its own line, if the cases' errors are independent, and says nothing of other scenes. n is how
+many cases were fitted: curves of fewer than {fewest}, or over less than a factor of {span:g} in x, are not. An exponent
+is a mean over the range that was measured: a frame has parts that do not grow.
 
 {table}"""
 
@@ -59,7 +63,8 @@ def text(table: polars.DataFrame) -> str:
     parts = [_introduction(timed), _null(timed)]
     if grid:
         parts += [TABLE.format(table=_grid(grid)), _found(grid)]
-    parts.append(GROWTH.format(confidence=CONFIDENCE, table=growth_table(rows)))
+    limits = {"confidence": CONFIDENCE, "fewest": FEWEST_POINTS, "span": LEAST_SPAN}
+    parts.append(GROWTH.format(table=growth_table(rows), **limits))
     return "\n\n".join(filter(None, parts))
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from experiments.measurements.timing import pass_column
 from experiments.studies.cells import Gaps, Row, label, span
-from experiments.studies.power_law import Fit, power_law
+from experiments.studies.power_law import MeanFit, mean_power_law
 from gpu_impl.techniques import SETTINGS
 
 
@@ -38,17 +38,15 @@ class Axis:
         """What a line along the axis is called."""
         return label(row, *(name for name in self.apart if name in SETTINGS))
 
-    def group(self, row: Row) -> tuple[object, ...]:
-        """What else a row's cost depends on: rows of one group grow from the same start."""
-        return tuple(row[name] for name in ("scene", "phase", "width", "height") if name not in self.apart)
+    def curve(self, row: Row) -> tuple[object, ...]:
+        """What a row's cost depends on besides its scene: rows of one curve grow from the same start."""
+        return tuple(row[name] for name in ("phase", "width", "height") if name not in self.apart)
 
     def pass_milliseconds(self, row: Row) -> float:
         """Time of the axis's own passes [ms]."""
         return sum(row[pass_column(name)] for name in self.passes)
 
 
-# over less, an exponent is that of the noise: a march of points has nearly as many lit pieces in every grating
-LEAST_SPAN = 2.0
 FOG, MESHES = ("scattering",), ("geometry", "shadow map", "shadow polygons")
 AXES = (
     Axis("pixels of the image", "resolution", "pixels", ("width", "height"), FOG),
@@ -69,8 +67,8 @@ def along(axis: Axis, rows: Iterable[Row]) -> dict[str, list[Row]]:
     return {name: sorted(line, key=lambda row: axis.quantity(row) or 0.0) for name, line in lines.items()}
 
 
-def growth(axis: Axis, line: Sequence[Row], of_passes: bool) -> Fit:
-    """Fit one technique's time, of the whole frame or of the axis's own passes, over the quantity.
+def growth(axis: Axis, line: Sequence[Row], of_passes: bool) -> MeanFit:
+    """Fit one technique's time, of the whole frame or of the axis's own passes, over the quantity, in each scene.
 
     Raises
     ------
@@ -78,10 +76,8 @@ def growth(axis: Axis, line: Sequence[Row], of_passes: bool) -> Fit:
         There are too few cases, x hardly differs, or a pass took no time.
     """
     x = [axis.quantity(row) or 0.0 for row in line]
-    if max(x) < LEAST_SPAN * min(x):
-        raise ValueError(f"x must grow by a factor of {LEAST_SPAN:g} or more, not {max(x) / min(x):.3g}.")
     milliseconds = [axis.pass_milliseconds(row) if of_passes else row["timing.ms_50"] for row in line]
-    return power_law(x, milliseconds, [axis.group(row) for row in line])
+    return mean_power_law(x, milliseconds, [row["scene"] for row in line], [axis.curve(row) for row in line])
 
 
 def growth_table(rows: Sequence[Row]) -> str:
@@ -91,7 +87,7 @@ def growth_table(rows: Sequence[Row]) -> str:
         techniques = along(axis, rows)
         if not techniques:
             why = gaps.because(f"the run has no timed case of the product '{axis.product}' with this quantity")
-            lines.append([axis.name, why, why, why, why, why])
+            lines.append([axis.name, why, why, why, why])
         for name, line in techniques.items():
             quantities = [axis.quantity(row) or 0.0 for row in line]
             lines.append(
@@ -101,10 +97,9 @@ def growth_table(rows: Sequence[Row]) -> str:
                     span(quantities, "{:,.4g}" if max(quantities) < 1e4 else "{:,.0f}"),
                     _cell(axis, line, gaps, of_passes=False),
                     _cell(axis, line, gaps, of_passes=True),
-                    str(len(line)),
                 ]
             )
-    headings = ["x", "technique", "from, to", "frame", "its passes", "n"]
+    headings = ["x", "technique", "from, to", "frame", "its passes"]
     passes = "; ".join(f"{axis.name}: {', '.join(axis.passes)}" for axis in AXES)
     return f"{gaps.table(headings, lines)}\n\nIts passes: {passes}."
 

@@ -6,10 +6,10 @@ import hashlib
 import json
 import os
 import re
-from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product as combinations
+from math import prod
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,9 +17,12 @@ from experiments.suite.schema import CameraChoice, Product, ReferenceChoice, Sui
 from experiments.technique_label import changed_settings
 from gpu_impl.techniques import Technique
 from scenes.errors import InputError
+from scenes.messages import readable
 
 # file systems take names of 255 bytes, and the writer's temporary files need some of them
 LONGEST_NAME = 180
+# A hundred times the largest shipped suite: a grid that asks for more has a key too many, and would fill the memory.
+MOST_CASES = 100_000
 
 
 @dataclass(frozen=True)
@@ -73,31 +76,57 @@ def cases_of(suite: Suite) -> list[Case]:
     Raises
     ------
     InputError
-        Two cases are the same.
+        Two cases are the same or have one name, or there are too many.
     """
-    cases: list[Case] = []
+    total = 0
     for product in suite.products:
-        cases += _cases_of(_with_paths(product, suite.folder), product.name if len(suite.products) > 1 else "")
-    counted = Counter(case.name for case in cases)
-    if twice := next((name for name, count in counted.items() if count > 1), None):
-        raise InputError(
-            f"The case {twice} stands in the suite twice: leave one out, or give its product another name."
-        )
-    return cases
+        total += _count(product)
+        if total > MOST_CASES:
+            raise InputError(
+                f"The product '{readable(product.name)}' brings the suite to {total:,} cases, more than the "
+                f"{MOST_CASES:,} that airlight takes; leave some values out."
+            )
+    cases: dict[str, Case] = {}
+    for product in suite.products:
+        prefix = product.name if len(suite.products) > 1 else ""
+        for case in _cases_of(_with_paths(product, suite.folder), prefix):
+            other = cases.setdefault(case.name, case)
+            if other is case:
+                continue
+            if other == case:
+                raise InputError(
+                    f"The case {case.name} stands in the suite twice: leave one out, or give its product another name."
+                )
+            raise InputError(f"Two cases have the same name, {case.name}: rename a product or a scene.")
+    return list(cases.values())
+
+
+def _count(product: Product) -> int:
+    """How many cases a product has, before any of them is made."""
+    fogs = len(product.phases or [{}]) * prod(len(values) for values in product.parameters.values())
+    views = len(product.scenes) * fogs * len(product.triangles or [None]) * len(product.size) * len(product.cameras)
+    settings = [(product.settings.axes() | choice.axes()).values() for choice in product.techniques]
+    return views * sum(prod(len(values) for values in axes) for axes in settings)
 
 
 def _with_paths(product: Product, folder: Path | None) -> Product:
-    """Paths as the working directory has them: those of a suite's file count from its own folder."""
-    if folder is None:
-        return product
-    scenes = [
-        str(folder / scene) if not os.path.isfile(scene) and os.path.isfile(folder / scene) else scene
-        for scene in product.scenes
-    ]
+    """Paths that mean the same in every process: absolute, where they stand from here or else from the suite's folder.
+
+    A shipped scene's name stays a name.
+    """
+    scenes = [_absolute(scene, folder, os.path.isfile) or scene for scene in product.scenes]
     reference = product.reference
     if reference.folder is not None:
-        reference = reference.model_copy(update={"folder": str(folder / reference.folder)})
+        missing = str((folder or Path()).absolute() / reference.folder)
+        found = _absolute(reference.folder, folder, os.path.isdir) or missing
+        reference = reference.model_copy(update={"folder": found})
     return product.model_copy(update={"scenes": scenes, "reference": reference})
+
+
+def _absolute(path: str, folder: Path | None, is_there: Callable[[Path], bool]) -> str | None:
+    """A path from the working directory or else from a folder; None where it is in neither."""
+    places = [Path.cwd(), folder.absolute()] if folder else [Path.cwd()]
+    return next((str(place / path) for place in places if is_there(place / path)), None)
 
 
 def _cases_of(product: Product, prefix: str) -> Iterator[Case]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Sequence
+from contextlib import suppress
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,8 @@ from scenes.messages import readable
 
 FOLDER = Path(__file__).parent.parent / "suites"
 Key = tuple[str | int, ...]
+# digits: no list in a file has more than a million items
+LONGEST_INDEX = 6
 
 
 def shipped() -> list[str]:
@@ -30,7 +34,7 @@ def load_suite(suite: str, changes: Sequence[str] = ()) -> tuple[str, Suite]:
     Parameters
     ----------
     changes : texts "key=value", each as if the file had it: `size=[64, 64]`, `reference.rel_error=0.02`,
-        `techniques.0.steps=32`; with products, a key at the top goes to each of them
+        `techniques.0.steps=32`; a key holds for every product, and one that begins with `products.0` for that alone
 
     Returns
     -------
@@ -49,13 +53,14 @@ def load_suite(suite: str, changes: Sequence[str] = ()) -> tuple[str, Suite]:
     try:
         text = path.read_text(encoding="utf-8")
         found = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} is not a suite: {error}.") from None
+    except ValueError as error:
+        # not TOML, not UTF-8, or a number of thousands of digits
+        raise InputError(f"{path} is not a suite: {str(error).rstrip('.')}.") from None
     except RecursionError:
         raise InputError(f"{path} is not a suite: its values are nested too deeply.") from None
     except OSError as error:
         raise InputError(f"{path} cannot be read ({error.strerror}).") from None
-    changed = [_change(found, change) for change in changes]
+    changed = [key for change in changes for key in _change(found, change)]
     try:
         return path.stem, Suite.model_validate({**_with_products(found), "folder": path.absolute().parent})
     except ValidationError as error:
@@ -72,35 +77,77 @@ def _with_products(found: dict[str, Any]) -> dict[str, Any]:
     return {"products": [shared | product for product in products], **study}
 
 
-def _change(found: dict[str, Any], change: str) -> Key:
-    """Set one key of the file's tables, and return it."""
+def _change(found: dict[str, Any], change: str) -> list[Key]:
+    """Set a key in each of the file's tables that it is to hold for, and return where."""
     name, equals, text = change.partition("=")
     if not (equals and name.strip()):
         raise InputError(f"--set {readable(change)} should be KEY=VALUE, such as --set size=[128,128].")
     try:
         value = tomllib.loads(f"value = {text}")["value"]
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):
         # a text without quotes
         value = text.strip()
-    key: Key = tuple(int(part) if part.isdigit() else part for part in name.strip().split("."))
-    if len(key) == 1 and key[0] in Product.model_fields:
-        # it is to hold for the whole suite, whatever products give themselves
-        for product in found.get("products", []):
-            if isinstance(product, dict):
-                product.pop(key[0], None)
-    at: Any = found
-    for part, after in zip(key, (*key[1:], ""), strict=True):
-        last = after == "" and part == key[-1]
-        try:
-            if isinstance(at, dict) and not last:
-                at = at.setdefault(part, {})
-            elif last:
-                at[part] = value
-            else:
-                at = at[part]
-        except (LookupError, TypeError):
-            raise InputError(f"--set {readable(change)}: the suite has nothing at '{name}'.") from None
-    return key
+    parts = name.strip().split(".")
+    products = _tables(found)
+    if len(parts) == 1:
+        if parts[0] in Product.model_fields:
+            # it is to hold for the whole suite, whatever products give themselves
+            for product in products:
+                product.pop(parts[0], None)
+        return [_set(found, parts, value, change, "the suite")]
+    if parts[0] == "products":
+        _fill(found, products, parts)
+        return [_set(found, parts, value, change, "the suite")]
+    own = [number for number, product in enumerate(products) if parts[0] in product]
+    # a table at the top of which every product has its own is nobody's
+    keys = [] if products and len(own) == len(products) else [_set(found, parts, value, change, "the suite")]
+    for number in own:
+        called = f"the product '{readable(str(products[number].get('name', number)))}'"
+        keys.append(("products", number, *_set(products[number], parts, deepcopy(value), change, called)))
+    return keys
+
+
+def _tables(found: dict[str, Any]) -> list[dict[str, Any]]:
+    """The file's products; none where it has none, or no tables."""
+    products = found.get("products", [])
+    return products if isinstance(products, list) and all(isinstance(one, dict) for one in products) else []
+
+
+def _fill(found: dict[str, Any], products: list[dict[str, Any]], parts: list[str]) -> None:
+    """Give a product its own copy of the table at the top of which one key is to differ: products.0.settings.steps."""
+    if len(parts) > 3 and parts[2] in found:
+        with suppress(LookupError):
+            products[_index(parts[1])].setdefault(parts[2], deepcopy(found[parts[2]]))
+
+
+def _set(table: dict[str, Any], parts: list[str], value: Any, change: str, called: str) -> Key:
+    """Set one key of a table, which is `called` so where it has no such place; tables on the way are made."""
+    key: list[str | int] = []
+    at: Any = table
+    try:
+        for part in parts[:-1]:
+            key.append(_index(part) if isinstance(at, list) else part)
+            at = at.setdefault(part, {}) if isinstance(at, dict) else at[key[-1]]
+        key.append(_index(parts[-1]) if isinstance(at, list) else parts[-1])
+        at[key[-1]] = value
+    except (LookupError, TypeError):
+        where = readable(".".join(parts))
+        raise InputError(f"--set {readable(change)}: {called} has nothing at '{where}'.") from None
+    return tuple(key)
+
+
+def _index(part: str) -> int:
+    """The place in a list that a part of a key names.
+
+    Raises
+    ------
+    LookupError
+        It names none.
+    """
+    # Python takes other scripts' digits, and refuses numbers of thousands of them
+    if not (part.isascii() and part.isdecimal() and len(part) <= LONGEST_INDEX):
+        raise LookupError(part)
+    return int(part)
 
 
 def _explained(error: ValidationError, path: Path, text: str, found: dict[str, Any], changed: list[Key]) -> str:
@@ -116,7 +163,7 @@ def _explained(error: ValidationError, path: Path, text: str, found: dict[str, A
         key = key[:-1]
     # pydantic's preface to what a validator says
     message = first["msg"].removeprefix("Value error, ").rstrip(".")
-    name = ".".join(map(str, key))
+    name = readable(".".join(map(str, key)))
     if not name:
         return f"{path}: {message}."
     if any(key[: len(one)] == one for one in changed):

@@ -118,8 +118,10 @@ class CameraChoice(_Strict):
     def __str__(self) -> str:
         """As it stands in tables and file names; empty for the scene's own."""
         if self.frames == 1:
-            return f"orbit {self.orbit:g}" if self.orbit else ""
-        return f"path {self.orbit:g} to {self.angles()[-1]:g}"
+            return f"orbit {_degrees(self.orbit)}" if self.orbit else ""
+        # so many digits that sums such as 0.1 + 2 x 0.1 are as short as they are written
+        last = round(self.angles()[-1], 12)
+        return f"path {_degrees(self.orbit)} to {_degrees(last)} in {self.frames}"
 
 
 class ReferenceChoice(_Strict):
@@ -130,7 +132,7 @@ class ReferenceChoice(_Strict):
     rel_error : float         relative standard error to reach
     time_limit : float        [s] after which one stops where it is
     deterministic : bool      by ray casting and quadrature instead of samples, without noise
-    folder : str or None      take committed ones from this folder, relative to the suite's file; see `experiments.gate`
+    folder : str or None      take committed ones from this folder, a path as those of scenes; see `experiments.gate`
     """
 
     rel_error: Annotated[Number, Field(gt=0, lt=1)] = 0.005
@@ -154,7 +156,8 @@ class Product(_Strict):
     phases : names of phase functions, or tables such as {name = "hg", g = 0.6}
     parameters : of the scenes, each a value or a list
     cameras : see `CameraChoice`
-    triangles : budgets that the scenes' meshes are decimated to; see `experiments.technique_benchmark.budget`
+    triangles : budgets that the scenes' meshes are decimated to, where the camera is the scene's own and stands still;
+        see `experiments.technique_benchmark.budget`
     techniques, settings : a technique's own settings go before those for all
     measure : names in `experiments.measurements.MEASUREMENTS`
     reference : see `ReferenceChoice`
@@ -184,7 +187,11 @@ class Product(_Strict):
     @classmethod
     def _names_differ(cls, scenes: list[str]) -> list[str]:
         # the files of a case are called after its scene
-        if name := _repeated([Path(scene).stem for scene in scenes]):
+        stems = [Path(scene).stem for scene in scenes]
+        for scene, stem in zip(scenes, stems, strict=True):
+            if stem in ("", ".."):
+                raise ValueError(f"'{scene}' is neither a scene's name nor the path of its file")
+        if name := _repeated(stems):
             raise ValueError(f"two scenes are called {name}")
         return scenes
 
@@ -192,6 +199,14 @@ class Product(_Strict):
     @classmethod
     def _phases_are_tables(cls, phases: Any) -> Any:
         return None if phases is None else [_phase_table(phase) for phase in _several(phases)]
+
+    @field_validator("triangles")
+    @classmethod
+    def _camera_is_the_scenes_own(cls, triangles: list[int] | None, info: ValidationInfo) -> list[int] | None:
+        # a turned camera loads the scene again, and would find its whole meshes
+        if triangles and any(camera.orbit or camera.frames > 1 for camera in info.data.get("cameras", [])):
+            raise ValueError("a budget of triangles goes with the scene's own camera only: leave it or the cameras out")
+        return triangles
 
     @field_validator("techniques")
     @classmethod
@@ -257,6 +272,11 @@ def _phase_table(phase: Any) -> Any:
     if isinstance(phase, dict) and isinstance(phase.get("name"), str):
         return {"phase": phase["name"], **{key: value for key, value in phase.items() if key != "name"}}
     raise ValueError('a phase function is a name, or a table such as {name = "hg", g = 0.6}')
+
+
+def _degrees(angle: float) -> str:
+    """An angle with all its digits, and no more."""
+    return repr(angle).removesuffix(".0")
 
 
 def _repeated(items: list[Item]) -> Item | None:

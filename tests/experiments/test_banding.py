@@ -112,7 +112,11 @@ def test_noise_of_the_reference_is_taken_away() -> None:
     # measured: 0.1004, 0.1003, and 0.0042 of the noise's own 0.1
     assert clean["rms"] == pytest.approx(0.1, rel=0.02)
     assert clean["along"] == pytest.approx(0.1, rel=0.02)
-    assert found(0.1 * WHITE, noise=noise)["rms"] < 0.02
+    # twenty times nothing but noise
+    fields = np.random.default_rng(5).standard_normal((20, SIDE, SIDE))
+    assert all(spectrum(0.1 * field, LIT, ABOVE, noise) is None for field in fields)
+    # a mean square that is larger by 5 %: 3 standard deviations are 2.3 %
+    assert found(np.sqrt(1.05) * 0.1 * WHITE, noise=noise)["rms"] == pytest.approx(0.1 * np.sqrt(0.05), rel=0.3)
     # three quarters of the noise are the technique's own
     half = found(0.1 * WHITE, noise=noise / 2)
     assert half["rms"] == pytest.approx(0.1 * np.sqrt(0.75), rel=0.02)
@@ -133,6 +137,9 @@ def test_the_dark_does_not_count() -> None:
 def test_windows_over_the_vanishing_point_are_left_out() -> None:
     small = np.ones((100, 100), bool)
     assert spectrum(WHITE[:100, :100], small, np.array([50.0, 50.0, 1.0])) is None
+    # a quarter of a window off its middle, and just beyond its edge
+    assert spectrum(WHITE[:100, :100], small, np.array([50.0, 24.0, 1.0])) is None
+    assert spectrum(WHITE[:100, :100], small, np.array([50.0, -1.0, 1.0])) is not None
     there = spectrum(WHITE[:100, :100], small, ABOVE)
     # a window of 100 pixels has no room for waves of 64
     assert np.isnan(there.along[-1])
@@ -211,5 +218,25 @@ def test_of_a_shot(tmp_path) -> None:
     assert same["banding.coarse_share"] is same["banding.period"] is None
     # a technique without error, beside a reference with noise
     noisy = banding(shot(truth, truth + 0.01 * WHITE, 0.01, scene))
-    assert noisy["banding.rms"] < 0.2 * 0.01
+    assert set(noisy.values()) == {None}
     assert set(banding(shot(truth, 0 * truth, 0.0, scene)).values()) == {None}
+
+
+def test_light_where_none_should_be_and_faint_light(tmp_path) -> None:
+    scene = write_scene(tmp_path, point(0, 9, 0), size=(SIDE, SIDE))
+    vanishing = vanishing_point(scene.camera, scene.lights[0])
+    radius = np.hypot(X - vanishing[0] / vanishing[2], Y - vanishing[1] / vanishing[2])
+    rings = 1 + 0.5 * np.sin(2 * np.pi * radius / 12)
+    truth = np.where(X < 160, 1.0, 0.0)
+    # the dark third has rings of the floor's size, 1 % of the median: they count as if it were lit by as much
+    ghost = banding(shot(truth + 0.01 * np.where(X < 160, 0, rings), truth, 0.0, scene))
+    assert ghost["banding.along_16px"] > 0.1
+    # as faint as a ten-thousandth of the median: a relative error of a hundredth of what it is of the pixel
+    faint = np.where(X < 160, 1.0, 1e-4)
+    assert banding(shot(np.where(X < 160, 1, rings) * faint, faint, 0.0, scene))["banding.rms"] < 0.01
+
+
+@pytest.mark.parametrize(("period", "counted"), [(48, 0.98), (64, 0.76), (80, 0.47), (128, 0.11), (256, 0.01)])
+def test_long_waves_count_in_part(period: float, counted: float) -> None:
+    waves = (np.sqrt(2) * np.sin(2 * np.pi * Y / period + np.pi * k / 4) for k in range(8))
+    assert np.mean([found(wave)["rms"] ** 2 for wave in waves]) == pytest.approx(counted, abs=0.006)

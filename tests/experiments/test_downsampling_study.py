@@ -68,16 +68,52 @@ def test_the_best_upsampling_is_counted_and_ties_are_shared() -> None:
     assert cells(text.split("Scene by scene")[1], "dragon") == ["bilateral, nearest_depth; 0.25"] * 3
 
 
+def test_a_scene_with_large_errors_has_no_more_weight() -> None:
+    some = rows()
+    for one in some:
+        # where all upsamplings come to the same, hundreds of times as large
+        if one["scene"] == "dragon":
+            one["edge.rel_95"] = 10.0 * one["downsample"]
+    text = STUDY.text(table(some))
+    # over bilinear's 1/4 and 1, so that their geometric mean is 1/2; of the means themselves nearly 1
+    assert cells(text, "edge", "4")[0] == "2 of 2; 0.5"
+
+
 def test_growth_is_fitted_behind_one() -> None:
     text = STUDY.text(table(rows()))
     # two scenes of three spacings; at N = 1 there is another error, which would bend the line
     assert cells(text, "Weng2010", "smooth", "bilateral") == [
         "– (1)",
-        "2.00 [2.00, 2.00] (n = 6)",
-        "2.00 [2.00, 2.00] (n = 6)",
+        "2.00 [2.00, 2.00]; 2.00 to 2.00 (2 scenes, n = 6)",
+        "2.00 [2.00, 2.00]; 2.00 to 2.00 (2 scenes, n = 6)",
     ]
-    assert cells(text, "Weng2010", "edge", "bilinear") == ["1.00 [1.00, 1.00] (n = 6)"] * 3
+    assert cells(text, "Weng2010", "edge", "bilinear") == ["1.00 [1.00, 1.00]; 1.00 to 1.00 (2 scenes, n = 6)"] * 3
     assert "- (1) no error above zero" in text
+
+
+def test_the_interval_of_growth_is_over_the_scenes() -> None:
+    # the dragon's errors grow faster by 1, in both phase functions alike
+    some = [one | {"phase": phase} for one in rows() for phase in ("isotropic", "rayleigh")]
+    for one in some:
+        if one["scene"] == "dragon":
+            one["edge.rel_95"] *= one["downsample"]
+    text = STUDY.text(table(some))
+    # 1.5 -+ 12.7062 / 2, Student's with one degree of freedom
+    assert cells(text, "Weng2010", "edge", "bilinear")[1] == "1.50 [-4.85, 7.85]; 1.00 to 2.00 (2 scenes, n = 12)"
+    assert "Student's t over the scenes' exponents" in " ".join(text.split())
+    alone = STUDY.text(table([one for one in some if one["scene"] == "dragon"]))
+    assert cells(alone, "Weng2010", "edge", "bilinear")[1] == "2.00 [2.00, 2.00] (1 scene, n = 6)"
+
+
+def test_a_picture_s_height_is_not_taken_for_growth() -> None:
+    some = [one for one in rows() if one["scene"] == "sphere"]
+    # another phase function with a hundred times the error, and none but at N = 8
+    for one in rows():
+        if one["scene"] == "sphere":
+            more = 100 * one["edge.rel_95"] if one["downsample"] == 8 else 0.0
+            some.append(one | {"phase": "rayleigh", "edge.rel_95": more})
+    text = STUDY.text(table(some))
+    assert cells(text, "Weng2010", "edge", "bilinear")[1] == "1.00 [1.00, 1.00] (1 scene, n = 3)"
 
 
 def test_a_picture_that_is_drawn_twice_counts_once() -> None:

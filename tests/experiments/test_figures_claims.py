@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from experiments.figures import FIGURES, models, page, stage
 from experiments.figures.claims import CLAIMS, committed, cost, limits, mathematics, pictures
 from experiments.figures.claims.claim import Finding, Verdict
 from experiments.figures.stage import Stage
+from experiments.figures.table_5_1 import Rate
 from gpu_impl.frame import Frame
 from scenes.errors import InputError
 
@@ -75,7 +77,50 @@ def test_formulas(small: Stage) -> None:
     assert mathematics._normalised(small).verdict == Verdict.WITH_THE_REPAIR
     assert "12.56637061" in mathematics._normalised(small).measured
     assert mathematics._accurate(small).verdict == Verdict.WITH_THE_REPAIR
-    assert mathematics._taylor(small).verdict == Verdict.WITH_THE_REPAIR
+    # the minimax terms that mend it are another expansion
+    assert mathematics._taylor(small).verdict == Verdict.NOT
+
+
+def test_intervals_hold_the_statistic(small: Stage) -> None:
+    """Over tiles, a share in one tile alone has a wider interval than the same share over the picture."""
+    pieces = models.Pieces.of_subject(small)
+    everywhere = np.arange(len(pieces.pixel)) % 10 == 0
+    in_one_place = np.arange(len(pieces.pixel)) < everywhere.sum()
+    widths = []
+    for wrong in (everywhere, in_one_place):
+        share, low, high = mathematics.over_tiles(small, lambda places, wrong=wrong: float(wrong[places].mean()))
+        assert share == pytest.approx(0.1, abs=0.01)
+        assert low <= share <= high
+        widths.append(high - low)
+    assert 3 * widths[0] < widths[1]
+
+
+def test_shadows_that_are_not_filtered_are_not_soft(small: Stage, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert pictures._soft_shadows(small).verdict == Verdict.REPRODUCED
+    frame = Stage.frame
+
+    def hard(self: Stage, *arguments: Any, surface_shadows: str = "hard", **settings: Any) -> Frame:
+        return frame(self, *arguments, **settings)
+
+    monkeypatch.setattr(Stage, "frame", hard)
+    assert pictures._soft_shadows(small).verdict == Verdict.NOT
+
+
+@pytest.mark.parametrize(
+    ("printed", "repaired", "verdict"),
+    [(40, 40, Verdict.REPRODUCED), (90, 40, Verdict.WITH_THE_REPAIR), (90, 90, Verdict.NOT)],
+)
+def test_rates_of_either_form_decide(
+    small: Stage, printed: float, repaired: float, verdict: Verdict, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Milliseconds a frame, of one scene twice as slow as of the other: 17 frames a second are 59 ms."""
+    times = {"printed": printed, "repaired": repaired}
+    found = [
+        Rate(scene, "isotropic", 20, {name: np.full(6, ms / slower) for name, ms in times.items()})
+        for scene, slower in (("one", 1), ("two", 2))
+    ]
+    monkeypatch.setattr(cost, "rates", lambda _: found)
+    assert cost._real_time(small).verdict == verdict
 
 
 @pytest.mark.parametrize(("factor", "verdict"), [(1.0, Verdict.REPRODUCED), (1.02, Verdict.NOT)])
@@ -126,6 +171,27 @@ def test_results_that_are_missing(airlight: Any, tmp_path: Path, monkeypatch: py
     answer = airlight("figures", "--size", "48", "48")
     assert answer.code == 2
     assert "--only" in answer.err
+
+
+def test_tables_that_lack_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    table, audit = (committed.RESULTS / name for name in (committed.PAIRS, committed.AUDIT))
+    rows = table.read_text().splitlines(keepends=True)
+    equations = json.loads(audit.read_text())
+    monkeypatch.setattr(committed, "RESULTS", tmp_path)
+    for name in (committed.PAIRS, committed.AUDIT):
+        (tmp_path / name).parent.mkdir(parents=True)
+    (tmp_path / committed.AUDIT).write_text(audit.read_text())
+    one = next(row for row in rows if row.startswith("empty") and "four Ei" in row)
+    for wrong in ([rows[0]], [row for row in rows if row != one], [*rows, one]):
+        (tmp_path / committed.PAIRS).write_text("".join(wrong))
+        with pytest.raises(InputError, match="once for each of donut_dragon, empty"):
+            committed.check_results()
+    (tmp_path / committed.PAIRS).write_text("".join(rows))
+    committed.check_results()
+    for wrong in ([row for row in equations if row["equation"] != "Alg. 4.1"], equations + equations):
+        (tmp_path / committed.AUDIT).write_text(json.dumps(wrong))
+        with pytest.raises(InputError, match=r"'Alg\. 4\.1' once"):
+            committed.check_results()
 
 
 def test_the_page(small: Stage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

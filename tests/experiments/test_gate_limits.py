@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+import re
+import tomllib
 
+import numpy as np
 import pytest
 
-from experiments.gate.limits import FLOOR, MARGIN, Limit, limits_of
+from experiments.gate import rounding
+from experiments.gate.limits import FLOOR, MARGIN, PATH, RUNS, Limit, limits_of
 from experiments.gate.measuring import METRICS
 from experiments.gate.update import changes
 from experiments.gate.verdicts import Verdict, judge, worst_of
+from gpu_impl import shader_source
 from scenes.errors import InputError
 
 SIGNED, ERROR = "scattering.image_mean_rel", "scattering.rel_95"
@@ -32,6 +37,27 @@ def test_a_margin_is_twice_the_most_that_a_value_moved() -> None:
     flip = limits["composite.flip"]
     assert flip == Limit(0.1, pytest.approx(0.002), pytest.approx(0.005), pytest.approx(MARGIN * 0.005))
     assert limits[SIGNED] == Limit(0.1, 0.0, 0.0, FLOOR)
+
+
+def test_a_value_that_only_ever_falls_moves_too() -> None:
+    found = limits_of([values()], [values(composite__flip=0.095), values(composite__flip=0.098)])["case"]
+    assert found["composite.flip"] == Limit(0.1, 0.0, pytest.approx(0.005), pytest.approx(MARGIN * 0.005))
+
+
+def test_rounding_is_tried_in_both_directions(monkeypatch: pytest.MonkeyPatch) -> None:
+    headers = []
+    monkeypatch.setattr(rounding, "TRIALS", 2)
+    monkeypatch.setattr(rounding, "measure_cases", lambda cases, drawn: headers.append(shader_source.HEADER) or {})
+    assert len(list(rounding.perturbed_values([]))) == len(headers) == 4
+    for name, off in rounding.FUNCTIONS.items():
+        factors = [float(re.search(rf"#define {name}\(x\) \({name}\(x\) \* (\S+)\)", one)[1]) for one in headers]
+        assert np.array(factors) - 1 == pytest.approx([off, off, -off, -off], abs=1e-9)
+
+
+def test_the_committed_limits_are_of_enough_runs() -> None:
+    made = tomllib.loads(PATH.read_text(encoding="utf-8"))
+    assert min(made["runs_idle"], made["runs_loaded"]) >= RUNS == 10
+    assert "note" not in made
 
 
 def test_what_cannot_be_drawn_has_no_limits() -> None:

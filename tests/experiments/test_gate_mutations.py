@@ -17,7 +17,7 @@ from gpu_impl.shader_source import SHADERS, ShaderError
 from scenes.errors import InputError
 
 BY_NAME = {mutation.name: mutation for mutation in MUTATIONS}
-# of three mutations a case that must notice and one that must not
+# of some mutations a case that must notice and one that must not
 SEEN_BY = {
     "flipped g": ("whole-sphere-hg-0.6-Nishita1987", "whole-sphere-rayleigh-Nishita1987"),
     "half-step shift": (
@@ -28,6 +28,11 @@ SEEN_BY = {
         "lattice-sphere-lit_intervals+quadrature-downsample-2",
         "lattice-sphere-lit_intervals+quadrature-downsample-2-upsample-nearest_depth",
     ),
+    "grey samples": ("coloured-coloured-Nishita1987", "whole-sphere-rayleigh-Nishita1987"),
+    "grey models": ("coloured-coloured-lit_intervals+quadrature", "whole-sphere-rayleigh-Nishita1987"),
+    "red for blue": ("coloured-coloured-Nishita1987", "coloured-coloured-lit_intervals+quadrature"),
+    "half a sun": ("coloured-coloured-Nishita1987", "whole-sphere-rayleigh-Nishita1987"),
+    "unweighted cut": ("coloured-coloured-uniform_march-jittered+riemann", "coloured-coloured-Nishita1987"),
 }
 NAMES = sorted({name for names in SEEN_BY.values() for name in names})
 

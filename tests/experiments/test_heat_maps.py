@@ -11,7 +11,7 @@ from colour.blindness import matrix_cvd_Machado2009
 from matplotlib.image import imread
 
 from experiments.heat_maps.colours import BEYOND, ENTRIES, NOISE_COLOUR, colour_map, table
-from experiments.heat_maps.heat_map import NOISE, HeatMap, is_noise, luminance, typical_noise
+from experiments.heat_maps.heat_map import NOISE, HeatMap, is_noise, luminance, typical_noise, white
 from experiments.heat_maps.scale import Scale, round_up
 from experiments.metrics import signed_relative_error
 from experiments.sheet import write_sheet, write_sheets
@@ -119,10 +119,23 @@ def test_what_is_no_scale_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "rounded"), [(1, 1), (0.1, 0.1), (0.3, 0.5), (0.0021, 0.005), (51, 100), (5e-7, 5e-7)]
+    ("value", "rounded"),
+    [(1, 1), (0.1, 0.1), (0.3, 0.5), (0.0021, 0.005), (51, 100), (5e-7, 5e-7), (5e-324, 1e-300), (0, 1e-300)],
 )
 def test_round_up(value: float, rounded: float) -> None:
     assert round_up(value) == pytest.approx(rounded, rel=1e-12)
+
+
+def test_white_is_that_of_the_lit_pixels() -> None:
+    """A beam through half a per cent of the picture, and a light that is red alone."""
+    beam = np.zeros((20, 20, 3))
+    beam[3, 4:6, 0] = 0.2, 0.4
+    # the 99th percentile of two red values and four that are 0
+    assert white(beam) == pytest.approx(np.percentile([0, 0, 0, 0, 0.2, 0.4], 99))
+    assert ABSOLUTE.scale(beam).limit == pytest.approx(0.5)
+    assert white(7 * beam) == pytest.approx(7 * white(beam))
+    assert white(0 * beam) == 1
+    assert ABSOLUTE.scale(np.full_like(beam, 5e-324)).limit > 0
 
 
 def test_errors_are_those_of_the_metrics() -> None:

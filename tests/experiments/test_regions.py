@@ -56,6 +56,21 @@ def test_no_plane_has_an_edge_however_steep(camera: Camera) -> None:
         assert not edges[inner].any(), steepness
 
 
+def test_no_plane_has_an_edge_where_it_comes_through_the_near_plane(camera: Camera) -> None:
+    """There distance from the near plane is nothing, while depth along the axis is as straight as anywhere."""
+    camera = replace(camera, near=4.0)
+    forward, up = camera.to_world[:3, 2], camera.to_world[:3, 1]
+    normal = forward + 3.0 * up
+    # through the viewing axis at depth 5: the near plane cuts it within the picture
+    depth = plane_depth(camera, normal.tolist(), float(normal @ (camera.to_world[:3, 3] + 5.0 * forward)))
+    on_plane = depth < 0.999 * camera.rays()[2]
+    assert depth[on_plane].min() < 0.3
+    inner = on_plane.copy()
+    inner[1:-1] &= on_plane[:-2] & on_plane[2:]
+    assert inner.sum() > 1000
+    assert not depth_edges(depth, camera)[inner].any()
+
+
 def test_both_sides_of_a_silhouette_are_edges(camera: Camera) -> None:
     depth = np.full((HEIGHT, WIDTH), 8.0)
     depth[:, 40:] = 8.3
@@ -142,3 +157,18 @@ def test_errors_are_those_of_their_region() -> None:
     assert noisy["edge.bias"] == pytest.approx(np.sqrt(found["edge.bias"] ** 2 - 0.25**2), rel=1e-12)
     black = measure_regions(test, np.zeros_like(truth), noise, parts)
     assert set(black.values()) == {None}
+
+
+def test_airlight_where_the_reference_has_none_counts() -> None:
+    truth = np.ones((HEIGHT, WIDTH, 3))
+    truth[:, 80:] = 0.0
+    right = np.zeros((HEIGHT, WIDTH), bool)
+    right[:, 80:] = True
+    leak = truth.copy()
+    leak[:, 88:] = 0.5
+    found = measure_regions(leak, truth, np.zeros_like(truth), {"shaft": right, "smooth": ~right})
+    # 8 of the 88 columns in which there is airlight in either
+    assert found["shaft.share"] == pytest.approx(8 / 88)
+    assert found["shaft.bias"] == 0.5
+    assert found["shaft.rel_50"] > 0.5
+    assert found["smooth.bias"] == 0.0

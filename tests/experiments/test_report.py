@@ -236,9 +236,29 @@ def test_a_study_loads_no_picture_and_no_markup() -> None:
     assert not re.search(r"<b |<img|javascript:[^<]*\"", html)
 
 
+def test_a_part_of_a_run_is_called_one(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("experiments.report.report.study_plots", lambda *given: [])
+    record = json.loads((folder / "run.json").read_text())
+    # one of the five cases failed, so that the run is not finished: all the same a page of five is whole
+    heads = {7: "5 of 7 cases; the run was stopped", 5: "", None: "5 cases; the run was stopped"}
+    for cases, words in heads.items():
+        (folder / "run.json").write_text(json.dumps(record | {"cases": cases}))
+        text = Page(write_report(folder)).text
+        assert (words or "3 cases done") in text.split("3 cases done")[0] + "3 cases done"
+        assert ("the run was stopped" in text) == bool(words)
+
+
+def test_a_folder_whose_name_is_a_pattern(folder: Path) -> None:
+    odd = folder.with_name("a[bc]*")
+    shutil.copytree(folder, odd)
+    assert [cells[0] for cells in Page(write_report(odd)).rows] == list("abcde")
+
+
 def test_what_is_no_run_is_refused(folder: Path) -> None:
     (folder / "results.parquet").write_bytes(b"half of a table")
-    with pytest.raises(InputError, match="is not a table that can be read"):
+    with pytest.raises(
+        InputError, match=r"is not a table that can be read: `airlight run SUITE --resume .*` writes it"
+    ):
         write_report(folder)
     (folder / "run.json").unlink()
     with pytest.raises(InputError, match="is not the folder of a run"):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from experiments.suite import cases_of, load_suite, shipped
+from experiments.suite import Case, cases_of, load_suite, shipped
 from experiments.suite.reading import FOLDER
 from reference.goal import Goal
 from scenes.errors import InputError
@@ -88,7 +88,7 @@ def test_what_is_left_out_has_a_default(suite) -> None:
     assert (case.name, case.phase, case.triangles, case.camera.frames) == ("empty-Weng2010-steps-7", "", None, 1)
 
 
-def test_every_axis_multiplies(suite) -> None:
+def test_every_axis_multiplies(suite, monkeypatch: pytest.MonkeyPatch) -> None:
     text = """
 scenes = ["empty", "sphere"]
 size = [[4, 4], [8, 4]]
@@ -105,9 +105,17 @@ downsample = 4
 """
     cases = cases_of(suite(text))
     assert len(cases) == 2 * 2 * 2 * 3 * 3 * (3 * 2 * 2 + 2)
-    one = next(case for case in cases if case.name.startswith("sphere-hg-0.6-sigma_t-0.2-8x4-path-0-to-1-Weng2010"))
+    one = next(
+        case for case in cases if case.name.startswith("sphere-hg-0.6-sigma_t-0.2-8x4-path-0-to-1-in-3-Weng2010")
+    )
     assert one.parameters == {"phase": "hg", "g": 0.6, "sigma_t": 0.2}
     assert (one.size, one.camera.angles(), one.technique.downsample) == ((8, 4), [0.0, 0.5, 1.0], 4)
+    # counted without being made
+    monkeypatch.setattr("experiments.suite.cases.MOST_CASES", len(cases))
+    assert len(cases_of(suite(text))) == len(cases)
+    monkeypatch.setattr("experiments.suite.cases.MOST_CASES", len(cases) - 1)
+    with pytest.raises(InputError, match=f"to {len(cases):,} cases"):
+        cases_of(suite(text))
 
 
 def test_cases_of_one_view_follow_each_other() -> None:
@@ -124,14 +132,6 @@ def test_a_product_takes_from_the_top_what_it_does_not_give(suite) -> None:
     changed = cases_of(suite(text, "size=[16, 2]", "products.0.name=c"))
     assert [case.size for case in changed] == [(16, 2)] * 2
     assert changed[0].product == "c"
-
-
-def test_set_reaches_whatever_a_file_can_hold(suite) -> None:
-    changes = ("scenes=sphere", "techniques.0.steps=[8, 9]", "reference.rel_error=0.1", "parameters.sigma_t=0.3")
-    cases = cases_of(suite(SMALL, *changes))
-    assert [(case.scene, case.technique.steps) for case in cases] == [("sphere", 8), ("sphere", 9)]
-    assert cases[0].reference.rel_error == 0.1
-    assert cases[0].parameters == {"sigma_t": 0.3}
 
 
 @pytest.mark.parametrize(
@@ -156,6 +156,11 @@ def test_set_reaches_whatever_a_file_can_hold(suite) -> None:
         (SMALL + "[[products]]\nname = 'a'\nsizes = 3\n", "(line 8): the key 'products.0.sizes'"),
         ("products = 3\n" + SMALL, "(line 1): the key 'products'"),
         (SMALL + "[[techniques]]\nname = 'Weng2010'\nsteps = 7\n", "stands in the suite twice"),
+        (SMALL.replace("empty", ""), "(line 1): the key 'scenes': '' is neither a scene's name"),
+        (SMALL.replace("empty", "/"), "(line 1): the key 'scenes': '/' is neither a scene's name"),
+        ("triangles = 9\ncameras = { frames = 2 }\n" + SMALL, "(line 1): the key 'triangles': a budget of triangles"),
+        ("triangles = 9\ncameras = [{}, { orbit = 1 }]\n" + SMALL, "(line 1): the key 'triangles': a budget of"),
+        ("rounds = " + "9" * 5000 + "\n" + SMALL, "is not a suite"),
         ("size = [4, 4]\nscenes = ['empty']\n", "the key 'techniques': Field required"),
         ("scenes = [\n", "is not a suite"),
     ],
@@ -167,22 +172,79 @@ def test_what_is_wrong_is_named_with_its_key_and_line(text: str, words: str, sui
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ("size", "should be KEY=VALUE"),
-        ("=3", "should be KEY=VALUE"),
-        ("size=3", "the key 'size', as --set has it"),
-        ("techniques.0.steps=many", "the key 'techniques.0.steps', as --set has it"),
-        ("techniques.5.steps=3", "the suite has nothing at 'techniques.5.steps'"),
-        ("scenes.name=3", "the suite has nothing at 'scenes.name'"),
-        ("colour=1", "the key 'colour', as --set has it"),
-    ],
-)
-def test_what_is_wrong_with_set_is_named(change: str, words: str, suite) -> None:
-    with pytest.raises(InputError) as caught:
-        suite(SMALL, change)
-    assert words in str(caught.value)
+def test_a_camera_that_stands_still_goes_with_a_budget_of_triangles(suite) -> None:
+    (case,) = cases_of(suite("triangles = 9\ncameras = { frames = 1, step = 2 }\n" + SMALL))
+    assert case.triangles == 9
+
+
+def test_a_case_that_stands_there_twice_is_told_from_two_of_one_name(suite) -> None:
+    with pytest.raises(InputError, match=r"^Two cases have the same name, x-y-Weng2010-steps-7: rename a product or a"):
+        cases_of(suite(SMALL.replace('"empty"', '"x y", "x-y"')))
+    products = "[[products]]\nname = 'a'\n[[products]]\nname = 'a'\n"
+    with pytest.raises(InputError, match=r"^The case a-empty-Weng2010-steps-7 stands in the suite twice"):
+        cases_of(suite(SMALL + products))
+    with pytest.raises(InputError, match=r"^Two cases have the same name, a-empty-Weng2010-steps-7"):
+        cases_of(suite(SMALL + products + "rounds = 4\n"))
+
+
+def test_cameras_that_differ_have_names_that_differ(suite) -> None:
+    cameras = [
+        "{ orbit = 10.0000001 }",
+        "{ orbit = 10.0000002 }",
+        "{ orbit = 10 }",
+        "{ frames = 3, step = 1 }",
+        "{ frames = 5, step = 0.5 }",
+        "{ orbit = 0.1, frames = 3, step = 0.1 }",
+    ]
+    cases = cases_of(suite(f"cameras = [{', '.join(cameras)}]\n" + SMALL))
+    assert [str(case.camera) for case in cases] == [
+        "orbit 10.0000001",
+        "orbit 10.0000002",
+        "orbit 10",
+        "path 0 to 2 in 3",
+        "path 0 to 2 in 5",
+        "path 0.1 to 0.3 in 3",
+    ]
+
+
+def test_a_product_that_is_too_large_is_refused_before_it_is_made(suite) -> None:
+    many = str([number / 1000 for number in range(400)])
+    with pytest.raises(
+        InputError, match=r"^The product 'grid' brings the suite to 64,000,000 cases, more than the 100,0"
+    ):
+        cases_of(suite(f"name = 'grid'\nparameters = {{ a = {many}, b = {many}, c = {many} }}\n" + SMALL))
+    # products count together, and every axis counts
+    text = SMALL.replace("7", str(list(range(1, 251)))) + f"[[products]]\nparameters = {{ a = {many} }}\n"
+    with pytest.raises(InputError, match=r"^The product 'b' brings the suite to 100,250 cases"):
+        cases_of(suite(text + "name = 'a'\n[[products]]\nname = 'b'\n"))
+
+
+def test_paths_are_absolute_and_names_stay_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    here, beside = tmp_path / "here", tmp_path / "beside"
+    for folder in (here, beside, here / "truth", beside / "truth", beside / "kept"):
+        folder.mkdir()
+    for path in (here / "a.xml", beside / "a.xml", beside / "b.xml"):
+        path.write_text("")
+    monkeypatch.chdir(here)
+    text = 'scenes = ["a.xml", "b.xml", "empty", "none.xml"]\nsize = [4, 4]\ntechniques = [{ name = "Weng2010" }]\n'
+    (beside / "mine.toml").write_text(text)
+
+    def read(folder: str) -> list[Case]:
+        return cases_of(load_suite("../beside/mine.toml", [f"reference.folder={folder}"])[1])
+
+    assert [case.scene for case in read("truth")] == [
+        str(here / "a.xml"),
+        str(here / ".." / "beside" / "b.xml"),
+        "empty",
+        "none.xml",
+    ]
+    found = {folder: read(folder)[0].reference.folder for folder in ("truth", "kept", "none", str(beside / "kept"))}
+    assert found == {
+        "truth": str(here / "truth"),
+        "kept": str(here / ".." / "beside" / "kept"),
+        "none": str(here / ".." / "beside" / "none"),
+        str(beside / "kept"): str(beside / "kept"),
+    }
 
 
 def test_a_long_name_is_cut_and_stays_its_own(suite) -> None:

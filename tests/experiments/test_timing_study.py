@@ -128,17 +128,59 @@ def test_growth_is_fitted_along_every_axis() -> None:
     # another scene costs something else, and has no growth of its own
     rows.append(timed(100.0, product="intervals", scene="wire_mesh") | {"counts.pieces": 4.0})
     text = STUDY.text(table(rows))
-    fog = "1.00 [1.00, 1.00]"
-    assert cells(text, "pixels of the image", "Weng2010") == ["16,384 to 1,048,576", "0.75 [0.75, 0.75]", fog, "4"]
+    pixels, steps, triangles = (f"1.00 [1.00, 1.00] (1 scene, n = {n})" for n in (4, 5, 3))
+    assert cells(text, "pixels of the image", "Weng2010") == [
+        "16,384 to 1,048,576",
+        "0.75 [0.75, 0.75] (1 scene, n = 4)",
+        pixels,
+    ]
     assert cells(text, "spacing N of evaluated pixels", "Weng2010") == [
         "1 to 8",
-        "-1.00 [-1.00, -1.00]",
-        "-2.00 [-2.00, -2.00]",
-        "8",
+        "-1.00 [-1.00, -1.00]; -1.00 to -1.00 (2 scenes, n = 8)",
+        "-2.00 [-2.00, -2.00]; -2.00 to -2.00 (2 scenes, n = 8)",
     ]
-    assert cells(text, "samples a ray", "Weng2010") == ["16 to 256", "0.50 [0.50, 0.50]", fog, "5"]
-    assert cells(text, "lit pieces a ray", "Weng2010")[:2] == ["1 to 16", "0.25 [0.25, 0.25]"]
-    assert cells(text, "triangles", "Weng2010") == ["5,000 to 80,000", "0.00 [0.00, 0.00]", fog, "3"]
+    assert cells(text, "samples a ray", "Weng2010") == ["16 to 256", "0.50 [0.50, 0.50] (1 scene, n = 5)", steps]
+    assert cells(text, "lit pieces a ray", "Weng2010")[:2] == ["1 to 16", "0.25 [0.25, 0.25] (1 scene, n = 3)"]
+    assert cells(text, "triangles", "Weng2010") == [
+        "5,000 to 80,000",
+        "0.00 [0.00, 0.00] (1 scene, n = 3)",
+        triangles,
+    ]
+
+
+def test_the_interval_of_growth_is_over_the_scenes() -> None:
+    rows = [
+        timed(n**slope, product="steps", steps=n, scene=scene, phase=phase)
+        for scene, slope in (("sphere", 0.5), ("dragon", 1.0))
+        for phase in ("isotropic", "rayleigh")
+        for n in (16, 32, 64)
+    ]
+    text = STUDY.text(table(rows))
+    # 0.75 -+ 12.7062 / 4, Student's with one degree of freedom
+    assert cells(text, "samples a ray", "Weng2010")[1] == "0.75 [-2.43, 3.93]; 0.50 to 1.00 (2 scenes, n = 12)"
+    assert "Student's t over the scenes' exponents" in " ".join(text.split())
+
+
+def test_what_costs_more_is_not_taken_for_growth() -> None:
+    """A phase function of ten times the cost, and a size of ten times it, each measured further along the axis."""
+    rows = []
+    for n, more in (
+        (16, {}),
+        (32, {}),
+        (64, {}),
+        (128, {"phase": "mie"}),
+        (256, {"phase": "mie"}),
+        (512, {"phase": "mie"}),
+    ):
+        rows.append(timed((10.0 if more else 1.0) * n**0.5, product="steps", steps=n) | more)
+    for count, width in ((1, 64), (2, 64), (4, 64), (8, 128), (16, 128), (32, 128)):
+        rows.append(
+            timed((10.0 if width > 64 else 1.0) * count**0.5, product="triangles", width=width)
+            | {"counts.triangles": count}
+        )
+    text = STUDY.text(table(rows))
+    assert cells(text, "samples a ray", "Weng2010")[1] == "0.50 [0.50, 0.50] (1 scene, n = 6)"
+    assert cells(text, "triangles", "Weng2010")[1] == "0.50 [0.50, 0.50] (1 scene, n = 6)"
 
 
 def test_an_axis_that_is_missing_or_too_short_says_so() -> None:

@@ -13,7 +13,8 @@ from reference.integrator import mi
 # isort: split
 from reference.deterministic.packets import PACKET, packed
 
-# numpy's array ends where a page ends, and the next page is nobody's: a kernel that reads on ends the process
+# All that `packed` has to read from ends where a page ends, and the next page is nobody's: the values that it is given
+# and the room that it makes. A kernel that reads beyond either ends the process.
 GUARDED = """
 import ctypes, sys
 import numpy as np
@@ -25,12 +26,24 @@ libc, page = ctypes.CDLL(None, use_errno=True), 4096
 libc.mmap.restype = ctypes.c_void_p
 libc.mmap.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int, ctypes.c_int, ctypes.c_int, ctypes.c_long]
 libc.mprotect.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int]
-base = libc.mmap(None, 2 * page, 3, 0x22, -1, 0)
-assert libc.mprotect(base + page, page, 0) == 0
+
+def guarded(size, kind=float):
+    base = libc.mmap(None, 2 * page, 3, 0x22, -1, 0)
+    assert libc.mprotect(base + page, page, 0) == 0
+    count = size * np.dtype(kind).itemsize
+    return np.frombuffer((ctypes.c_char * count).from_address(base + page - count), kind)
+
+numpys = np.zeros
 for size in (1, 17, 20, 31, 33):
-    values = np.frombuffer((ctypes.c_double * size).from_address(base + page - 8 * size))
+    values = guarded(size)
     values[:] = np.arange(size)
-    twice = 2 * packed(mi.Float64, values)
+    made = []
+    np.zeros = lambda *shape: made.append(guarded(*shape)) or made[-1]
+    taken = packed(mi.Float64, values)
+    np.zeros = numpys
+    # it takes the memory that it is watched in
+    assert [one.size >= size for one in made] == [True]
+    twice = 2 * taken
     dr.eval(twice)
     assert (np.array(twice) == 2 * np.arange(size)).all()
 print("read")

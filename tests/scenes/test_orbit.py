@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,19 @@ def test_the_eye_turns_about_what_it_looks_at(name: str) -> None:
     np.testing.assert_allclose(
         before[:3, 3] + distance * before[:3, 2], turned[:3, 3] + distance * turned[:3, 2], atol=1e-6
     )
+
+
+def test_what_lies_behind_the_eye_is_not_turned_about() -> None:
+    scene = load("sphere", SIZE)
+    away = scene.camera.to_world.copy()
+    # its meshes are behind it now
+    away[:3, 0] *= -1
+    away[:3, 2] *= -1
+    camera = replace(scene.camera, to_world=away, near=0.5)
+    turned = orbit_to_world(replace(scene, camera=camera), 90.0)
+    # about the near plane's middle
+    np.testing.assert_allclose(turned[:3, 3], away[:3, 3] + 0.5 * away[:3, 2] - 0.5 * away[:3, 0], atol=1e-12)
+    np.testing.assert_allclose(turned[:3, 2], away[:3, 0], atol=1e-12)
 
 
 def test_nothing_but_the_camera_changes() -> None:

@@ -41,7 +41,12 @@ def _point_and_spot(stage: Stage) -> Finding:
                 pass
     restricted = takes["point"] == takes["spot"] == list(CLOSED_FORMS) and not takes["directional"]
     told = {str(kind): f"{len(models)} of {len(CLOSED_FORMS)}" for kind, models in takes.items()}
-    return Finding(f"Closed forms that take a light: {listed(told)}.", restricted, restricted)
+    return Finding(
+        f"Closed forms that take a light: {listed(told)}. It is what airlight's forms are written to take, of whose "
+        "equations h, the distance of a light, is part; that no other closed form could do is not shown.",
+        restricted,
+        restricted,
+    )
 
 
 CLAIMS = (

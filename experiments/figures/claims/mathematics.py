@@ -2,23 +2,63 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import quad
 
+from experiments.figures.choices import SUBJECT
 from experiments.figures.claims.claim import Claim, Finding, listed
 from experiments.figures.models import Pieces
 from experiments.figures.stage import Stage
+from experiments.intervals import CONFIDENCE
 
 # a piece is right where it is within
 WITHIN = 0.01
 # a model is accurate where no more of the pieces are wrong than
 MOST_WRONG = 0.01
+# of a picture's side; the picture's tiles are what its intervals are drawn of
+TILES = 8
+RESAMPLES = 400
+SEED = 51
 # a phase function integrates to 1 where it does within
 NORMALISED = 1e-9
 
 
-def _share_wrong(stage: Stage, model: str, phase: str) -> float:
-    return float((Pieces.of_subject(stage).errors(stage, model, phase) > WITHIN).mean())
+def over_tiles(stage: Stage, statistic: Callable[[NDArray[np.intp]], float]) -> tuple[float, float, float]:
+    """A statistic of the lit pieces, and the interval that holds it 95 % of the time.
+
+    Percentile bootstrap over tiles of the picture, drawn with replacement: pieces of neighbouring pixels are alike, and
+    say little more than one.
+
+    Parameters
+    ----------
+    statistic : takes the pieces' places in the list, which may come more than once
+
+    Source: Künsch 1989, The Jackknife and the Bootstrap for General Stationary Observations (blocks); Efron and
+    Tibshirani 1993, section 13.3 (percentiles).
+    """
+    pieces, camera = Pieces.of_subject(stage), stage.field(SUBJECT).scene.camera
+    row, column = np.divmod(pieces.pixel, camera.width)
+    tile = (row * TILES // camera.height) * TILES + column * TILES // camera.width
+    members = [found for found in (np.flatnonzero(tile == one) for one in range(TILES**2)) if found.size]
+    random = np.random.default_rng(SEED)
+    drawn = [
+        statistic(np.concatenate([members[one] for one in random.integers(len(members), size=len(members))]))
+        for _ in range(RESAMPLES)
+    ]
+    low, high = np.percentile(drawn, [50 * (1 - CONFIDENCE), 50 * (1 + CONFIDENCE)])
+    return statistic(np.arange(len(pieces.pixel))), float(low), float(high)
+
+
+def _share_wrong(stage: Stage, model: str, phase: str) -> tuple[float, float, float]:
+    wrong = Pieces.of_subject(stage).errors(stage, model, phase) > WITHIN
+    return over_tiles(stage, lambda places: float(wrong[places].mean()))
+
+
+def _percent(shares: tuple[float, float, float]) -> str:
+    return "{:.2%} [{:.2%}, {:.2%}]".format(*shares)
 
 
 def _count(stage: Stage) -> str:
@@ -27,15 +67,17 @@ def _count(stage: Stage) -> str:
 
 def _pegoraro_beside_sun(stage: Stage) -> Finding:
     pieces = Pieces.of_subject(stage)
-    found = {
-        name: np.percentile(pieces.errors(stage, name, "isotropic"), [50, 95]) for name in ("pegoraro2009", "sun2005")
-    }
-    told = {name: f"{median:.1e} and {worst:.1e}" for name, (median, worst) in found.items()}
-    better = bool(found["pegoraro2009"][1] < found["sun2005"][1])
+    found = {name: pieces.errors(stage, name, "isotropic") for name in ("pegoraro2009", "sun2005")}
+    told = {name: "{:.1e} and {:.1e}".format(*np.percentile(errors, [50, 95])) for name, errors in found.items()}
+    pegoraro, sun = found.values()
+    ratio, low, high = over_tiles(
+        stage, lambda places: float(np.percentile(pegoraro[places], 95) / np.percentile(sun[places], 95))
+    )
     return Finding(
-        f"{_count(stage)}, median and 95th percentile: {listed(told)}. Against Lecocq et al. nothing was tested.",
-        as_printed=better,
-        repaired=better,
+        f"{_count(stage)}, median and 95th percentile: {listed(told)}. The second percentile's ratio is {ratio:.2g} "
+        f"[{low:.2g}, {high:.2g}]. Against Lecocq et al. nothing was tested.",
+        as_printed=high < 1,
+        repaired=high < 1,
     )
 
 
@@ -43,9 +85,10 @@ def _accurate(stage: Stage) -> Finding:
     wrong = {model: _share_wrong(stage, model, "isotropic") for model in ("weng2010:printed", "weng2010:three-ei")}
     printed, repaired = wrong.values()
     return Finding(
-        f"Of {_count(stage)} {printed:.1%} are off by more than {WITHIN:.0%} as printed, {repaired:.3%} repaired.",
-        as_printed=printed <= MOST_WRONG,
-        repaired=repaired <= MOST_WRONG,
+        f"Of {_count(stage)} {_percent(printed)} are off by more than {WITHIN:.0%} as printed, {_percent(repaired)} "
+        "repaired.",
+        as_printed=printed[2] <= MOST_WRONG,
+        repaired=repaired[2] <= MOST_WRONG,
     )
 
 
@@ -56,15 +99,16 @@ def _taylor(stage: Stage) -> Finding:
         ]
         for phase in ("rayleigh", "hg")
     }
-    told = {phase: "{:.0%}, {:.0%} and {:.2%}".format(*three) for phase, three in wrong.items()}
+    told = {phase: "{}, {} and {}".format(*map(_percent, three)) for phase, three in wrong.items()}
     pieces = Pieces.of_subject(stage)
     inside = float(((pieces.begin < pieces.x_h) & (pieces.x_h < pieces.end)).mean())
     return Finding(
         f"Of {_count(stage)} off by more than {WITHIN:.0%} as printed, as printed but for the misprints, and with as "
         f"many near-minimax terms in place of Taylor's: {listed(told)} (hg: 0.6). {inside:.0%} of the pieces hold the "
-        "light's projection, and there the series does not converge (results/audit, Eqs. 24 and 29).",
-        as_printed=all(printed <= MOST_WRONG for printed, _, _ in wrong.values()),
-        repaired=all(minimax <= MOST_WRONG for _, _, minimax in wrong.values()),
+        "light's projection, and there the series does not converge (results/audit, Eqs. 24 and 29). The near-minimax "
+        "terms are another expansion, which airlight has in its place, and decide nothing here.",
+        as_printed=all(printed[2] <= MOST_WRONG for printed, _, _ in wrong.values()),
+        repaired=all(mended[2] <= MOST_WRONG for _, mended, _ in wrong.values()),
     )
 
 
@@ -79,12 +123,14 @@ def _normalised(stage: Stage) -> Finding:
     )
 
 
+INTERVALS = f"Intervals (95 %) are bootstrapped over {TILES} x {TILES} tiles of the picture."
 CLAIMS = (
     Claim(
-        "Compared to Lecocq et al. and Sun et al., the quality of Pegoraro et al.'s results is better.",
+        "Compared to Sun et al., the quality of Pegoraro et al.'s results is better.",
         "1, 10",
-        "Isotropic, in float32, on the lit pieces of `donut_dragon`. Reproduced if the 95th percentile of the "
-        "relative error is below that of Sun's table.",
+        "The thesis says so of Lecocq et al. too, whose model airlight does not have. Isotropic, in float32, on the "
+        "lit pieces of `donut_dragon`. Reproduced if the 95th percentile of the relative error is below that of Sun's "
+        f"table: the interval of their ratio lies below 1. {INTERVALS}",
         "2.3",
         _pegoraro_beside_sun,
     ),
@@ -92,7 +138,7 @@ CLAIMS = (
         "We obtain an accurate evaluation of the radiative transport equation.",
         "39",
         f"The isotropic closed form, as before. Reproduced if at most {MOST_WRONG:.0%} of the pieces are off by more "
-        f"than {WITHIN:.0%}.",
+        f"than {WITHIN:.0%}, the upper end of the interval taken.",
         "2.3",
         _accurate,
     ),
@@ -100,7 +146,8 @@ CLAIMS = (
         "If the phase function is anisotropic, we use an expansion into a Taylor series.",
         "28, 29",
         f"Rayleigh's function and Henyey and Greenstein's (0.6) with 5 terms, as before. Reproduced if at most "
-        f"{MOST_WRONG:.0%} of the pieces are off by more than {WITHIN:.0%} with both.",
+        f"{MOST_WRONG:.0%} of the pieces are off by more than {WITHIN:.0%} with both, the upper end of the interval "
+        "taken.",
         "2.3",
         _taylor,
     ),

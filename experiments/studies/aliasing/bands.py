@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from experiments.measurements.banding import COARSE, OCTAVES
+from experiments.measurements.banding import COARSE, OCTAVES, WINDOW
 from experiments.studies import Plot
 from experiments.studies.aliasing.naming import naming, shared_settings
 from experiments.studies.aliasing.styles import Styles
@@ -18,8 +18,9 @@ INTRODUCTION = """## Bands and grain
 The error of the scattering layer's luminance, relative, every pixel evaluated ({shared}), taken apart
 into waves in windows of the picture (`experiments/measurements/banding.py`): those of {coarse} to {longest} pixels are
 bands, *along* the shafts (rings around the light) or *across* them (streaks); shorter ones are grain. Root mean
-squares. The coarse share is that of the bands in the mean square: 4.8 % for white noise, next to nothing for blue
-noise.
+squares. The coarse share is that of the bands in the mean square: for white noise 4.8 % in windows of {window} pixels
+and less in smaller pictures, next to nothing for blue noise. Waves longer than {longest} pixels count in part. The
+strongest wave is a bin of the spectrum: one of p pixels stands for p²/{twice} more or less.
 
 {table}"""
 
@@ -45,8 +46,9 @@ def banding_text(rows: Sequence[Row]) -> str:
         lines.append([row["scene"], row["phase"], name_of(row), *cells])
     headings = ["scene", "phase function", "technique", *(heading for heading, _ in COLUMNS.values())]
     return INTRODUCTION.format(
-        shared=shared_settings(shown), coarse=COARSE, longest=OCTAVES[-1], table=gaps.table(headings, lines)
-    )
+        shared=shared_settings(shown), coarse=COARSE, longest=OCTAVES[-1], window=WINDOW, twice=2 * WINDOW,
+        table=gaps.table(headings, lines),
+    )  # fmt: skip
 
 
 def banding_plots(rows: Sequence[Row]) -> Iterator[Plot]:

@@ -14,7 +14,8 @@ INTRODUCTION = """## Flicker
 
 The camera turns around the scene: {path}; {shared}. Flicker is what changes in the scattering layer from one frame to
 the next beyond the reference's own change, relative to the reference, over the pixels with airlight: root mean square
-(the reference's noise taken away) and 95th percentile. An error that stays where it is in the picture does not flicker.
+and 95th percentile. An error that stays where it is in the picture does not flicker. Nothing is taken away for noise of
+the reference, which frames share; the column `flicker.noise` has its upper bound.
 
 {table}"""
 

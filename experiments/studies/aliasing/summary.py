@@ -16,7 +16,9 @@ INTRODUCTION = """## In short
 
 Over the regular march (`Nishita1987`) with as many samples, the geometric mean over the scenes and phase functions that
 both draw: the error's 95th percentile and its median, its bands and its grain at {steps} samples (below), and flicker
-(95th percentile). Behind it the median of the orders of convergence of the 95th percentile, least and most in brackets.
+(95th percentile). Behind it the median of the orders of convergence of the 95th percentile over scenes and phase
+functions, and from the least to the most of them: how far they differ, not an interval of the median; and of how many
+ladders of steps they are, for the error of others falls over too few.
 
 {table}"""
 RATIOS: dict[str, tuple[str, Callable[[Row], float | None]]] = {
@@ -50,10 +52,11 @@ def summary_text(still: Sequence[Row], steps: Sequence[Row], path: Sequence[Row]
     gaps, lines = Gaps(), []
     for name in products["still"]:
         cells = [_ratio(products[product], name, value, gaps) for product, value in RATIOS.values()]
-        found = orders.get(name)
+        found = orders.get(name, [])
+        fitted = [one for one in found if one is not None]
         spread = (
-            f"{np.median(found):.2f} [{min(found):.2f}, {max(found):.2f}]"
-            if found
+            f"{np.median(fitted):.2f}; {min(fitted):.2f} to {max(fitted):.2f} ({len(fitted)} of {len(found)})"
+            if fitted
             else gaps.because("no order of convergence was found")
         )
         lines.append([name, *cells, spread])
@@ -88,12 +91,12 @@ def _picture(row: Row) -> tuple[str, str, int]:
     return row["scene"], row["phase"], row["steps"]
 
 
-def _orders(rows: Sequence[Row]) -> dict[str, list[float]]:
-    """The orders of the 95th percentile that were fitted, by technique."""
-    found: dict[str, list[float]] = {}
+def _orders(rows: Sequence[Row]) -> dict[str, list[float | None]]:
+    """The orders of the 95th percentile of each technique's measured ladders; None where none could be fitted."""
+    found: dict[str, list[float | None]] = {}
     for (_, _, name), mine in ladders(rows).items():
         measured = [row for row in mine if row.get("scattering.rel_95") is not None]
-        fit = order(measured, "scattering.rel_95").fit if measured else None
-        if fit:
-            found.setdefault(name, []).append(-fit.exponent)
+        if measured:
+            fit = order(measured, "scattering.rel_95").fit
+            found.setdefault(name, []).append(-fit.exponent if fit else None)
     return found
