@@ -55,7 +55,8 @@ def write_page(folder: Path, out: Path) -> Path:
     made = made_by_run(record, table, folder, out)
     plots = [_write_plot(out, plot, made) for plot in study.plots(table)]
     with replacing(out / "results.csv") as beside:
-        table.write_csv(beside)
+        # seven digits: pictures are float32
+        table.write_csv(beside, float_scientific=True, float_precision=6)
     total = record.get("cases", len(table))
     count = f"all {total} cases" if len(table) == total else f"{len(table)} of {total} cases: the run was stopped"
     text = PAGE.format(title=study.title, made=made, text=study.text(table), plots="\n".join(plots), count=count)

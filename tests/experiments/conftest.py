@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from experiments import cli
+from experiments.suite import load_suite
 
 
 class Result:
@@ -33,3 +34,15 @@ def airlight(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
         return Result(code, captured.out, captured.err)
 
     return run
+
+
+@pytest.fixture
+def suite(tmp_path: Path):
+    """Load a suite from a text."""
+
+    def read(text: str, *changes: str):
+        path = tmp_path / "mine.toml"
+        path.write_text(text)
+        return load_suite(str(path), changes)[1]
+
+    return read

@@ -32,7 +32,7 @@ def test_the_committed_bars_are_those_of_the_script() -> None:
     script = runpy.run_path(str(FOLDER.parents[1] / "scripts" / "make_gratings.py"))
     assert script["GAPS"] == GAPS
     for gaps in GAPS:
-        assert (SCENE.parent / f"grating_{gaps}.obj").read_text() == script["grating"](gaps)
+        assert (SCENE.parent / f"grating_{gaps}.xml").read_text() == script["grating"](gaps)
 
 
 @pytest.mark.parametrize("gaps", GAPS)

@@ -17,18 +17,6 @@ from scenes.loader import load
 SMALL = 'scenes = ["empty"]\nsize = [4, 5]\n[[techniques]]\nname = "Weng2010"\nsteps = 7\n'
 
 
-@pytest.fixture
-def suite(tmp_path: Path):
-    """Load a suite from a text."""
-
-    def read(text: str, *changes: str):
-        path = tmp_path / "mine.toml"
-        path.write_text(text)
-        return load_suite(str(path), changes)[1]
-
-    return read
-
-
 @pytest.mark.parametrize("name", shipped())
 def test_a_shipped_suite_has_scenes_that_take_its_parameters(name: str) -> None:
     found, loaded = load_suite(name)

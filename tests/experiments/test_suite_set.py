@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from experiments.suite import cases_of, load_suite
@@ -30,18 +28,6 @@ techniques = [{ name = "FrontFinal" }, { name = "Nishita1987", steps = 9 }]
 [[products]]
 name = "none"
 """
-
-
-@pytest.fixture
-def suite(tmp_path: Path):
-    """Load a suite from a text."""
-
-    def read(text: str, *changes: str):
-        path = tmp_path / "mine.toml"
-        path.write_text(text)
-        return load_suite(str(path), changes)[1]
-
-    return read
 
 
 def test_set_reaches_whatever_a_file_can_hold(suite) -> None:
