@@ -15,11 +15,10 @@ from experiments.heat_maps.heat_map import NOISE
 from experiments.report.pictures import LAYER, choose_pictures
 from experiments.report.study import study_plots, study_text
 from experiments.report.table import cell_text, result_table
-from experiments.run.folder import read_record
+from experiments.run.folder import read_record, read_table
 from experiments.run.rows import Row
 from experiments.studies import find_study
 from experiments.technique_label import technique_label
-from scenes.errors import InputError
 from scenes.replacing import replacing
 
 REPORT = "report.html"
@@ -60,7 +59,7 @@ def write_report(folder: Path) -> Path:
         The folder is no run's, has no table yet, or cannot be written.
     """
     record = read_record(folder)
-    table = _table(folder)
+    table = read_table(folder)
     rows = table.to_dicts()
     study = find_study(record["study"])
     done = [row for row in rows if row["status"] == "done"]
@@ -89,18 +88,6 @@ def write_report(folder: Path) -> Path:
     with replacing(path) as beside:
         beside.write_text(page, encoding="utf-8", errors="replace")
     return path
-
-
-def _table(folder: Path) -> Any:
-    import polars
-
-    path = folder / "results.parquet"
-    try:
-        return polars.read_parquet(path, glob=False)
-    except (OSError, polars.exceptions.PolarsError):
-        raise InputError(
-            f"{path} is not a table that can be read: `airlight run SUITE --resume {folder}` writes it again."
-        ) from None
 
 
 def _part(record: dict[str, Any], count: int) -> str:

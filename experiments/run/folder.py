@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from experiments.provenance import environment
 from experiments.run.rows import Row
@@ -22,10 +22,13 @@ from scenes.errors import InputError
 from scenes.file_names import check_name
 from scenes.replacing import make_folder, replacing
 
+if TYPE_CHECKING:
+    import polars
+
 Contents = dict[str, Any]
 # raised when what a folder holds changes its meaning
 FORMAT = 1
-RUN, CASES, LOCK = "run.json", "cases", ".lock"
+RUN, CASES, LOCK, PARQUET = "run.json", "cases", ".lock", "results.parquet"
 
 
 class RunError(InputError):
@@ -59,8 +62,8 @@ class RunFolder:
         table = polars.DataFrame(told, infer_schema_length=None)
         # a column without any value has no type either, and CSV takes none such
         table = table.with_columns(polars.col(polars.Null).cast(polars.String))
-        for ending, write in ((".csv", table.write_csv), (".parquet", table.write_parquet)):
-            with replacing(self.path / f"results{ending}") as beside:
+        for name, write in (("results.csv", table.write_csv), (PARQUET, table.write_parquet)):
+            with replacing(self.path / name) as beside:
                 try:
                     write(beside)
                 except polars.exceptions.PolarsError as error:
@@ -144,6 +147,27 @@ def read_record(path: Path) -> dict[str, Any]:
             f"({environment()['airlight']}) does not read: use that one, or run the suite again."
         )
     return record
+
+
+def read_table(path: Path) -> polars.DataFrame:
+    """The rows of a run, as its tables have them.
+
+    Raises
+    ------
+    InputError
+        There is no table yet, or it is damaged.
+    """
+    import polars
+
+    table = path / PARQUET
+    try:
+        # a name with brackets is a name
+        return polars.read_parquet(table, glob=False)
+    except (OSError, polars.exceptions.PolarsError):
+        raise InputError(
+            f"{table} is missing or damaged, and is not a table that can be read: `airlight run SUITE --resume {path}` "
+            "writes it again."
+        ) from None
 
 
 def finish_run(folder: RunFolder) -> None:

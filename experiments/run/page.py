@@ -9,9 +9,8 @@ from typing import Any
 import polars
 
 from experiments.pages import prepare_page
-from experiments.run.folder import read_record
+from experiments.run.folder import read_record, read_table
 from experiments.studies import Plot, find_study
-from scenes.errors import InputError
 from scenes.replacing import replacing
 
 PAGE = """# {title}
@@ -23,22 +22,6 @@ PAGE = """# {title}
 {plots}
 [results.csv](results.csv) has every column of {count}.
 """
-
-
-def read_table(folder: Path) -> polars.DataFrame:
-    """The rows of a run.
-
-    Raises
-    ------
-    InputError
-        The folder is no run's, another version made it, or it has no table yet.
-    """
-    read_record(folder)
-    path = folder / "results.parquet"
-    try:
-        return polars.read_parquet(path, glob=False)
-    except (OSError, polars.exceptions.PolarsError):
-        raise InputError(f"{path} is missing or damaged: `airlight run SUITE --resume {folder}` writes it.") from None
 
 
 def write_page(folder: Path, out: Path) -> Path:
