@@ -87,10 +87,10 @@ def render(scene: Scene, technique: str = "Weng2010", **settings: Any) -> Frame:
     InputError
         There is no such technique or setting, it cannot take this scene, or there is no OpenGL.
     """
-    from gpu_impl.renderer import Renderer
+    from experiments.renderers import open_renderer
 
     chosen = _technique(technique, settings)
-    with Renderer(scene) as renderer:
+    with open_renderer(scene) as renderer:
         return renderer.render(chosen)
 
 
@@ -99,10 +99,10 @@ def milliseconds(scene: Scene, technique: str = "Weng2010", **settings: Any) -> 
 
     Parameters and what is raised: see `render`.
     """
-    from gpu_impl.renderer import Renderer
+    from experiments.renderers import open_renderer
 
     chosen = _technique(technique, settings)
-    with Renderer(scene) as renderer:
+    with open_renderer(scene) as renderer:
         # the first frame compiles and allocates
         renderer.render(chosen)
         return renderer.milliseconds(chosen)

@@ -14,8 +14,8 @@ from pydantic import TypeAdapter, ValidationError
 
 from experiments.pictures import Picture, read_picture
 from experiments.provenance import TECHNIQUE_KEYS, environment, file_hashes
+from experiments.renderers import open_renderer
 from gpu_impl.frame import Frame
-from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import Technique
 from scenes.catalogue import FOLDER
 from scenes.errors import InputError
@@ -79,7 +79,7 @@ def draw_again(path: Path, scene: str | None = None) -> Again:
     _check_origin(picture)
     technique = _technique(picture)
     loaded = _load(picture, scene)
-    with Renderer(loaded) as renderer:
+    with open_renderer(loaded) as renderer:
         frame = renderer.render(technique)
     drawn = {name: np.ascontiguousarray(image, np.float32) for name, image in frame.layers.items()}
     differing = np.zeros(frame.depth.shape, bool)

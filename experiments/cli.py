@@ -27,8 +27,10 @@ from experiments.options import (
     SceneArgument,
     Size,
     TimeLimit,
+    given_beside,
     parse_parameters,
 )
+from experiments.pareto_cli import pareto
 from experiments.render_cli import render
 from experiments.run_cli import page, run
 from experiments.termination import terminated_cleanly
@@ -92,8 +94,9 @@ app.command()(render)
 
 @app.command()
 def reference(
+    context: typer.Context,
     scene: SceneArgument,
-    out: Annotated[Path, typer.Option(help="The EXR file to write.")],
+    out: Annotated[Path | None, typer.Option(help="The EXR file to write.")] = None,
     parameter: Parameters = None,
     size: Size = None,
     rel_error: RelError = 0.005,
@@ -109,6 +112,14 @@ def reference(
             "--deterministic", help="Ray casting and quadrature instead of samples; goals and limits are idle."
         ),
     ] = False,
+    export: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Write camera, depths and conventions there, to match the scene with another engine; without --out "
+            "nothing is estimated.",
+        ),
+    ] = None,
 ) -> None:
     """Estimate a scene's reference in Mitsuba and write it with its standard error.
 
@@ -119,15 +130,28 @@ def reference(
     """
     import airlight
     from experiments.console import say
+    from experiments.export import check_folder, write_export
     from experiments.exr import check_writable
     from experiments.terminal import ReferenceWatcher, announce_reference, announce_scene, announce_variant, told
 
     # refused before the scene is loaded
     Goal(rel_error, time_limit, percentile, sample_limit)
-    check_writable(out, ".exr")
+    if out:
+        check_writable(out, ".exr")
+    elif not export:
+        raise InputError("reference needs --out with a file for the estimate, or --export with a folder, or both.")
+    elif given := given_beside(context, ("scene", "parameter", "size", "export")):
+        raise InputError(f"Without --out nothing is estimated; leave {' and '.join(given)} out.")
+    if export:
+        check_folder(export)
     loaded = airlight.load(scene, size, **parse_parameters(parameter))
     announce_scene(loaded)
     announce_variant()
+    if export:
+        write_export(export, loaded)
+        say(f"{export}: {loaded.name}, camera, depths and conventions; README.txt there says how to use them")
+    if not out:
+        return
     with terminated_cleanly(), ReferenceWatcher(rel_error) as watcher:
         result = airlight.reference(
             loaded,
@@ -144,5 +168,5 @@ def reference(
     say(f"{out}: {loaded.name}, {told(result)}")
 
 
-for command in (compare, run, page, gate, accuracy, agree, audit, atlas, quadrature, spectra, figures):
+for command in (compare, run, page, gate, accuracy, agree, audit, atlas, quadrature, spectra, figures, pareto):
     app.command()(command)

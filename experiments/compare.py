@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Protocol, TypeGuard
 
 import numpy as np
 
-from experiments.exr import MAIN, check_writable
+from experiments.exr import check_writable
+from experiments.exr_layers import MAIN
+from experiments.fits_better import fits_better
 from experiments.heat_maps.heat_map import HeatMap
 from experiments.metrics import Image, Metrics, measure
 from experiments.pictures import Picture
 from experiments.sheet import ABSOLUTE, SIGNED_RELATIVE, summary, write_sheets
 from gpu_impl.frame import Frame
-from reference.estimate import Reference
+from reference.estimate import LAYERS, Reference
 from scenes.errors import InputError
 from scenes.messages import readable
 
@@ -96,6 +98,17 @@ def compare_all(
     return metrics
 
 
+def notices(test: Picture, truth: Picture, layer: str) -> Iterator[str]:
+    """Say what people should know of a comparison of two files that can be compared; nothing where all is plain."""
+    for picture in (test, truth):
+        yield from picture.notices
+        if layer not in picture.layers:
+            yield f"The only picture in {picture.path} is taken for its {layer} layer."
+    yield from filter(None, [other_scene(test, truth)])
+    if better := fits_better(_layer(test, layer, ""), _layer(truth, layer, "")):
+        yield f"{test.path} fits far better {better}."
+
+
 def other_scene(test: Picture, truth: Picture) -> str:
     """Say of what each is where two files are not of one scene; empty where they are, or where one does not say."""
     digests = [picture.metadata.get("scene_digest") for picture in (test, truth)]
@@ -117,11 +130,22 @@ def _layer(result: Any, layer: str, role: str) -> Image:
     if not _is_result(result):
         return np.asarray(result)
     image = result.layers.get(layer)
+    if image is None and layer in LAYERS and isinstance(result, Picture) and not result.metadata:
+        image = _only_picture(result)
     if image is None or image.ndim != 3:
         colours = [name for name, found in result.layers.items() if found.ndim == 3]
         whose = result.path if isinstance(result, Picture) else role
         raise InputError(f"{whose} has no layer '{layer}'; it has {', '.join(colours) or 'no colour layer'}.")
     return image
+
+
+def _only_picture(picture: Picture) -> Image | None:
+    """What a file holds whose program has no name for the layer; None where it holds several pictures, or ours."""
+    main = picture.layers.get(MAIN)
+    others = {name: image for name, image in picture.layers.items() if image.ndim == 3 and name != MAIN}
+    # a layer that was taken for the composite is there under both names
+    is_only = all(image is main and name not in LAYERS for name, image in others.items())
+    return main if is_only else None
 
 
 def _name(result: Any, otherwise: str) -> str:

@@ -60,7 +60,7 @@ def compare(
     from dataclasses import asdict
 
     import airlight
-    from experiments.compare import compare_all, other_scene
+    from experiments.compare import compare_all, notices
     from experiments.console import console, say, warn
 
     if len(pictures) < 2:
@@ -70,9 +70,9 @@ def compare(
         raise InputError(f"Without --heatmap, the PNG to write, there is nothing to draw with {' and '.join(given)}.")
     *tests, truth = (airlight.read(picture) for picture in pictures)
     metrics = [asdict(found) for found in compare_all(tests, truth, layer=layer, sheet=heatmap, heat_maps=heat_maps)]
-    for test in tests:
-        if notice := other_scene(test, truth):
-            warn(notice)
+    # the reference's own once
+    for notice in dict.fromkeys(notice for test in tests for notice in notices(test, truth, layer)):
+        warn(notice)
     if json:
         rows = [{"layer": layer, **found} for found in metrics]
         if len(tests) > 1:

@@ -9,14 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from experiments.exr_layers import MAIN, Layers, layers_of
+from experiments.exr_parts import PREFIX, metadata_of, notices_of, read_parts
 from scenes.errors import InputError
 from scenes.file_names import check_name
 from scenes.replacing import replacing
-
-Layers = dict[str, np.ndarray]
-PREFIX = "airlight:"
-# the layer that a viewer shows which knows no layers
-MAIN = "composite"
 
 
 def write_exr(path: Path, layers: Mapping[str, np.ndarray], metadata: Mapping[str, object]) -> None:
@@ -84,52 +81,26 @@ def check_writable(path: Path, ending: str = "") -> None:
         raise InputError(f"{path} will be written as {ending[1:].upper()}; give it a name that ends in {ending}.")
 
 
-def read_exr(path: Path) -> tuple[Layers, dict[str, str]]:
+def read_with_notices(path: Path) -> tuple[Layers, dict[str, str], list[str]]:
     """Read a file of any program.
 
     Returns
     -------
-    layers : name to (H, W, 3) or (H, W), float32     plain R, G, B are the layer "composite", where none has that name
+    layers : name to (H, W, 3) or (H, W), float32     linear Rec.709; `experiments.exr_layers` says which is "composite"
     metadata : dict                                   what airlight wrote, without the prefix
+    notices : list of str                             what people should know of how the pixels were taken
 
     Raises
     ------
     InputError
-        The file is missing, is not an EXR, or holds more or less than one whole picture.
+        The file is missing, is not an EXR, or holds no whole flat picture of square pixels.
     """
-    import OpenEXR
+    parts = read_parts(path)
+    layers, notices = layers_of(path, parts)
+    return layers, metadata_of(parts), [*notices_of(path, parts), *notices]
 
-    check_name(path)
-    if not os.path.isfile(path):
-        raise InputError(f"There is no file {path}.")
-    try:
-        with OpenEXR.File(str(path), separate_channels=True) as file:
-            channels = {name: np.array(channel.pixels, np.float32) for name, channel in file.channels().items()}
-            # a copy: the file empties its own when it is closed
-            header, parts = dict(file.header()), len(file.parts)
-        layers = _grouped(channels)
-    except (RuntimeError, ValueError, TypeError, OSError):
-        raise InputError(f"{path} is not an OpenEXR file that can be read.") from None
-    if parts > 1:
-        raise InputError(f"{path} has {parts} parts, of which airlight would see the first; save each as a file.")
-    if not all(map(np.array_equal, header["dataWindow"], header["displayWindow"])):
-        raise InputError(f"{path} holds only a part of its picture, or more (a data window); save the picture whole.")
-    metadata = {key.removeprefix(PREFIX): str(value) for key, value in header.items() if key.startswith(PREFIX)}
+
+def read_exr(path: Path) -> tuple[Layers, dict[str, str]]:
+    """Layers and metadata of a file that airlight wrote, which needs no notice; see `read_with_notices`."""
+    layers, metadata, _ = read_with_notices(path)
     return layers, metadata
-
-
-def _grouped(channels: Mapping[str, np.ndarray]) -> Layers:
-    """Layers of three colours or of one channel; whatever else a file holds is no picture of ours."""
-    grouped: dict[str, dict[str, np.ndarray]] = {}
-    for name, plane in channels.items():
-        layer, _, letter = name.rpartition(".")
-        grouped.setdefault(layer, {})[letter] = plane
-    plain = grouped.pop("", {})
-    grouped.setdefault(MAIN, plain)
-    layers: Layers = {}
-    for layer, planes in grouped.items():
-        if planes.keys() >= set("RGB"):
-            layers[layer] = np.stack([planes[letter] for letter in "RGB"], axis=-1)
-        elif len(planes) == 1:
-            (layers[layer],) = planes.values()
-    return layers

@@ -10,6 +10,7 @@ from rich.table import Table
 from analytic import MODELS
 from experiments.suite import shipped as shipped_suites
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
+from gpu_impl.lattices import LATTICES
 from gpu_impl.techniques import CHOICES, RANGES, SETTINGS, TECHNIQUES, Technique
 from gpu_impl.visibilities import VISIBILITIES
 from scenes.catalogue import FOLDER, shipped
@@ -22,8 +23,11 @@ def listing() -> list[Table]:
         _table("scenes", ("name", "file"), [(name, f"{FOLDER.name}/{name}.xml") for name in shipped()]),
         _table(
             "techniques (any other cell runs as visibility+airlight)",
-            ("name", "visibility", "airlight model", "steps", "shadow map"),
-            [(t.name, t.visibility, t.airlight, str(t.steps), str(t.shadow_map)) for t in TECHNIQUES.values()],
+            ("name", "visibility", "airlight model", "lattice", "steps", "shadow map"),
+            [
+                (t.name, t.visibility, t.airlight, t.lattice, str(t.steps), str(t.shadow_map))
+                for t in TECHNIQUES.values()
+            ],
         ),
         _table("visibilities", ("name", "what"), [(name, part.what) for name, part in VISIBILITIES.items()]),
         _table(
@@ -36,6 +40,7 @@ def listing() -> list[Table]:
             ("name", "source", "phase functions"),
             [(name, model.citation, ", ".join(model.phases or ("any",))) for name, model in MODELS.items()],
         ),
+        _table("lattices", ("name", "what"), [(name, kind.what) for name, kind in LATTICES.items()]),
         _table("settings of a technique", ("name", "may be", "by default"), list(_settings())),
         _table("suites", ("name",), [(name,) for name in shipped_suites()]),
         _table("meshes", ("name", "from", "path"), [(m.name, m.origin, str(m.path)) for m in available()]),

@@ -108,6 +108,11 @@ def _picture(name: str, image: Image) -> NDArray[np.float64]:
         raise InputError(f"The {name} is no array of numbers; give one of the shape (height, width, 3).") from None
     if found.ndim != 3 or found.shape[2] != 3 or not found.size:
         raise InputError(f"The {name} is an array of the shape {found.shape}; give one of (height, width, 3).")
-    if not np.isfinite(found).all():
-        raise InputError(f"The {name} holds values that are not finite; nothing can be measured on it.")
+    broken = ~np.isfinite(found).all(axis=2)
+    if broken.any():
+        row, column = np.argwhere(broken)[0]
+        raise InputError(
+            f"The {name} holds values that are not finite in {broken.sum()} of its pixels, the first in row {row}, "
+            f"column {column}; nothing can be measured on it."
+        )
     return found

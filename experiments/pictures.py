@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.exr import Layers, read_exr, write_exr
+from experiments.exr import read_with_notices, write_exr
+from experiments.exr_layers import Layers
 from experiments.metrics import signed_relative_error
 from experiments.provenance import describe_files, describe_frame, describe_reference, describe_scene
 from gpu_impl.frame import Frame
@@ -25,11 +26,13 @@ class Picture:
     path : Path
     layers : dict            name to (H, W, 3) or (H, W), float32, row 0 at the top
     metadata : dict          what airlight wrote into it, as text; empty for another program's file
+    notices : tuple of str   what people should know of how its pixels were taken
     """
 
     path: Path
     layers: Layers
     metadata: dict[str, str]
+    notices: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """One line, for notebooks."""
@@ -37,8 +40,9 @@ class Picture:
 
 
 def read_picture(path: str | Path) -> Picture:
-    """Read an EXR file of any program; see `experiments.exr.read_exr`."""
-    return Picture(Path(path), *read_exr(Path(path)))
+    """Read an EXR file of any program; see `experiments.exr.read_with_notices`."""
+    layers, metadata, notices = read_with_notices(Path(path))
+    return Picture(Path(path), layers, metadata, tuple(notices))
 
 
 def write_frame(path: Path, scene: Scene, frame: Frame) -> None:

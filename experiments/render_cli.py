@@ -12,7 +12,9 @@ from experiments.technique_options import (
     AirlightModel,
     Composition,
     Downsample,
+    LatticeName,
     ShadowMapSize,
+    ShadowSource,
     ShadowStorage,
     Steps,
     SurfaceShadows,
@@ -35,10 +37,12 @@ def render(
     airlight_model: AirlightModel = None,
     steps: Steps = None,
     shadow_map: ShadowMapSize = None,
+    lattice: LatticeName = None,
     downsample: Downsample = None,
     upsample: Upsample = None,
     surface_shadows: SurfaceShadows = None,
     shadow_storage: ShadowStorage = None,
+    shadow_source: ShadowSource = None,
     composition: Composition = None,
     again: Annotated[
         Path | None,
@@ -64,8 +68,8 @@ def render(
     import airlight
     from experiments.console import say, warn
     from experiments.exr import check_writable
+    from experiments.renderers import open_renderer
     from experiments.terminal import announce_scene
-    from gpu_impl.renderer import Renderer
     from gpu_impl.techniques import find_technique
 
     settings = {
@@ -73,10 +77,12 @@ def render(
         "airlight": airlight_model,
         "steps": steps,
         "shadow_map": shadow_map,
+        "lattice": lattice,
         "downsample": downsample,
         "upsample": upsample,
         "surface_shadows": surface_shadows,
         "shadow_storage": shadow_storage,
+        "shadow_source": shadow_source,
         "composition": composition,
     }
     check_writable(out, ".exr")
@@ -85,13 +91,13 @@ def render(
     chosen = find_technique(technique, **settings)
     for notice in chosen.notices(loaded):
         warn(notice)
-    with Renderer(loaded) as renderer:
+    with open_renderer(loaded) as renderer:
         frame = renderer.render(chosen)
-        milliseconds = renderer.milliseconds(chosen)
+        cost = "a control" if chosen.asks_rays else f"{renderer.milliseconds(chosen):.1f} ms a frame"
     airlight.save(out, loaded, frame)
     say(
-        f"{out}: {loaded.name}, {frame.technique.name}, {milliseconds:.1f} ms a frame on {frame.gl.renderer} (median "
-        "of 5, wall clock around glFinish)"
+        f"{out}: {loaded.name}, {frame.technique.name}, {cost} on {frame.gl.renderer}"
+        + ("" if chosen.asks_rays else " (median of 5, wall clock around glFinish)")
     )
 
 

@@ -41,7 +41,7 @@ def run(
     resume: Annotated[
         Path | None, typer.Option(metavar="FOLDER", help="Go on with the run in this folder, and no other.")
     ] = None,
-) -> None:
+) -> Path:
     """Run a suite: techniques beside references, with a table, a report, a sheet and an EXR per case.
 
     Each finished case is kept at once. The same command again goes on with a run that was stopped, or whose cases
@@ -112,6 +112,7 @@ def run(
         )
     if failed or left:
         raise typer.Exit(1)
+    return folder.path
 
 
 def page(

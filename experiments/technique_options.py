@@ -14,15 +14,22 @@ Steps = Annotated[int | None, typer.Option(metavar="S", help="Samples of the vis
 ShadowMapSize = Annotated[
     int | None, typer.Option("--shadow-map", metavar="R", help="Texels on a side of the shadow map.")
 ]
-Downsample = Annotated[
-    int | None, typer.Option(metavar="N", help="Evaluate fog on every N-th pixel (`airlight list`).")
+LatticeName = Annotated[
+    str | None, typer.Option("--lattice", metavar="L", help="On which rays fog is evaluated (`airlight list`).")
 ]
-Upsample = Annotated[str | None, typer.Option(metavar="U", help="What fills the pixels between (`airlight list`).")]
+Downsample = Annotated[
+    int | None, typer.Option(metavar="N", help="How coarse the lattice is: every N-th pixel of the grid.")
+]
+Upsample = Annotated[str | None, typer.Option(metavar="U", help="What fills the pixels between those of the grid (`airlight list`).")]
 SurfaceShadows = Annotated[
     str | None, typer.Option(metavar="KIND", help="Shadows on surfaces: hard, or soft (percentage-closer filtering).")
 ]
 ShadowStorage = Annotated[
     str | None, typer.Option(metavar="KIND", help="Where the fog reads the shadow map: a texture or a buffer.")
+]
+ShadowSource = Annotated[
+    str | None,
+    typer.Option(metavar="KIND", help="What says where it is dark: the shadow map, or rays of the reference, a control."),
 ]
 Composition = Annotated[
     str | None,

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.models import sun2005
 from analytic.models.weng2010.polynomials import POLYNOMIAL_PHASES, near_minimax, taylor
 from analytic.phase import Phase
 from gpu_impl.closed_form_coefficients import partial_fractions_glsl, polynomials_glsl
@@ -57,6 +61,8 @@ class AirlightShader:
     phases : tuple of str         names of the phase functions that it takes; None for all
     any_light : bool              whether it takes directional lights, and lights outside a bounded medium
     generated : callable          texts of the includes that are computed for a phase function, by name
+    table : callable or None      float32 values (rows, columns[, components]) for a phase function, which the shader
+                                  reads as `uniform sampler2D airlight_table`, interpolated
     """
 
     source: str
@@ -64,6 +70,7 @@ class AirlightShader:
     phases: tuple[str, ...] | None = None
     any_light: bool = True
     generated: Callable[[Phase], Mapping[str, str]] = nothing
+    table: Callable[[Phase], NDArray[np.float32]] | None = None
 
 
 def _closed_form(
@@ -74,6 +81,14 @@ def _closed_form(
 
 
 ISOTROPIC = ("isotropic",)
+
+
+def _sun2005(side: int) -> AirlightShader:
+    """Sun 2005 with a table of this size."""
+    shader = _closed_form("sun2005", f"a table of one function, {side} x {side} samples (Sun 2005)", ISOTROPIC)
+    return replace(shader, table=lambda phase: sun2005.published_table(side).values.astype(np.float32))
+
+
 # names are those of analytic.MODELS where it has the model, all but `quadrature`, which is its `quadrature_float32`
 AIRLIGHT_MODELS = {
     "riemann": AirlightShader("airlight/riemann.glsl", "one point sample a piece (Nishita 1987)"),
@@ -91,6 +106,11 @@ AIRLIGHT_MODELS = {
         "weng2010_polynomial", f"repaired, {POLYNOMIAL_TERMS} near-minimax terms", POLYNOMIAL_PHASES, _minimax
     ),
     "one_ei": _closed_form("one_ei", "exact, one complex Ei an end", ("isotropic", "rayleigh", "schlick"), _fractions),
+    "sun2005": _sun2005(sun2005.PUBLISHED_SIDE),
+    **{f"sun2005:{side}": _sun2005(side) for side in sun2005.SIDES},
+    "depth_fog": AirlightShader(
+        "airlight/depth_fog.glsl", "fog lit all along the ray as it is at the eye's place: only depth counts"
+    ),
     "quadrature": AirlightShader(
         "airlight/quadrature.glsl", f"{QUADRATURE_NODES} tuned nodes under a rational map", generated=_nodes
     ),

@@ -44,7 +44,7 @@ class Device:
         if key not in self._programs:
             self._programs[key] = compile_program(
                 self.context,
-                ShaderSource(vertex, defines),
+                ShaderSource(vertex, defines, includes, generated),
                 ShaderSource(fragment, defines, includes, generated),
             )
         return self._programs[key]

@@ -5,17 +5,19 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 
 from gpu_impl.device import Device, read, shared_device
 from gpu_impl.frame import Frame
 from gpu_impl.frame_passes import FramePasses, View, view_key
+from gpu_impl.given import Finder, find_none
 from gpu_impl.motion import moved
 from gpu_impl.passes.scattering import COUNTERS
 from gpu_impl.passes.shadow_map import check_map_size
-from gpu_impl.passes.shadow_volume import check_polygons
 from gpu_impl.passes.tone_mapping import tone_map
+from gpu_impl.recording import Pieces, Recording
 from gpu_impl.techniques import Technique
 from gpu_impl.timing import NO_CLOCK, Clock
 from gpu_impl.visibilities import VISIBILITIES
@@ -27,15 +29,20 @@ class Renderer:
     """Holds one scene on the GPU and draws it with any technique.
 
     Use it as a context manager, or call `release`.
+
+    Parameters
+    ----------
+    device : Device     the process's own by default
+    find_lit : Finder   casts rays for techniques that ask for them
     """
 
-    def __init__(self, scene: Scene, device: Device | None = None) -> None:
+    def __init__(self, scene: Scene, device: Device | None = None, find_lit: Finder = find_none) -> None:
         self.scene = scene
         self.device = device or shared_device()
         if max(scene.camera.width, scene.camera.height) > self.device.largest_texture:
             limit = self.device.largest_texture
             raise InputError(f"The image is larger than this OpenGL allows ({limit} pixels on a side).")
-        self.passes = FramePasses(self.device, scene)
+        self.passes = FramePasses(self.device, scene, find_lit)
         self._views: dict[tuple[object, ...], View] = {}
 
     def __enter__(self) -> Renderer:
@@ -127,6 +134,8 @@ class Renderer:
         float
             Wall-clock time, all passes up to glFinish [ms].
         """
+        if technique.asks_rays:
+            raise InputError(f"{technique.name} is told by ray casting what is lit, so that its time means nothing.")
         with self._drawing(technique):
             self.passes.look(moved(self.scene, number, self.passes.geometry.bounds))
             self.passes.clock = clock
@@ -146,17 +155,75 @@ class Renderer:
         Returns
         -------
         dict
-            Arrays (h, w) of every `technique.downsample`-th pixel by their names in `COUNTERS`: lit pieces handed to
-            the airlight model, texels read from shadow maps, exponential integrals, and exponentials, a colour's
-            counted as three.
+            Arrays (h, w) of the lattice's cells by their names in `COUNTERS`: lit pieces handed to the airlight model,
+            texels read from shadow maps, exponential integrals, and exponentials, a colour's counted as three.
         """
         with self._drawing(technique):
-            view, counts = self.passes.see(technique), self.passes.lattice_texture(technique)
-            airlight = self.passes.scatter(technique, view, counts)
-            found = read(counts)
+            view, airlight, counts = self.passes.see(technique), *self._lattice_textures(technique, 2)
+            found = 0
+            for number in range(len(self.passes.lights)):
+                self.passes.scatter_light(airlight, technique, view, number, counts=counts, first=True)
+                found = found + read(counts)
             self.device.give_back(airlight, counts)
             view.give_back(self.device)
         return {name: found[..., channel] for channel, name in enumerate(COUNTERS)}
+
+    def record(self, technique: Technique) -> list[Pieces]:
+        """Find what the technique calls lit, for each light: the pieces that it hands to its airlight model.
+
+        Raises
+        ------
+        InputError
+            Besides what the other methods raise: its airlight is interpolated between corners.
+        """
+        if VISIBILITIES[technique.visibility].airlight_at_corners:
+            raise InputError(
+                f"{technique.name} interpolates airlight between corners: its pieces alone do not make it."
+            )
+        found = []
+        with self._drawing(technique):
+            view, (airlight,) = self.passes.see(technique), self._lattice_textures(technique, 1)
+            for number in range(len(self.passes.lights)):
+                # how many there are is known from a frame that counts them
+                self.passes.scatter_light(airlight, technique, view, number, first=True)
+                reported = read(airlight)[..., 3].sum(dtype=np.float64)
+                recording = Recording(self.device.context, int(reported), airlight.width)
+                self.passes.scatter_light(airlight, technique, view, number, recording=recording, first=True)
+                found.append(recording.read(self.passes.rays(technique, view, number)))
+                recording.release()
+            self.device.give_back(airlight)
+            view.give_back(self.device)
+        return found
+
+    def reconstructed(self, technique: Technique, airlight: list[np.ndarray]) -> np.ndarray:
+        """Bring airlight that was evaluated elsewhere to full resolution as the technique does.
+
+        Parameters
+        ----------
+        airlight : list of (h, w, 3)    of each light, on the lattice's cells
+
+        Returns
+        -------
+        (H, W, 3) float32
+        """
+        device, passes = self.device, self.passes
+        with self._drawing(technique):
+            view, (cells,) = passes.see(technique), self._lattice_textures(technique, 1)
+            whole = device.texture((self.scene.camera.width, self.scene.camera.height), 4)
+            layers = [device.texture(whole.size, 4) for _ in range(2)]
+            on_grid = technique.lattice == "grid"
+            for number, values in enumerate([sum(airlight)] if on_grid else airlight):
+                cells.write(np.ascontiguousarray(np.pad(values, ((0, 0), (0, 0), (0, 1))), np.float32))
+                if not on_grid:
+                    passes.reconstruct(whole, technique, view, number, cells)
+            passes.combine(tuple(layers), technique, view, cells if on_grid else whole)
+            found = read(layers[1])[..., :3]
+            device.give_back(cells, whole, *layers)
+            view.give_back(device)
+        return found
+
+    def _lattice_textures(self, technique: Technique, count: int) -> list[Any]:
+        return [self.passes.lattice_texture(technique) for _ in range(count)]
 
     @contextmanager
     def _drawing(self, technique: Technique) -> Iterator[None]:
@@ -167,8 +234,7 @@ class Renderer:
         technique.check_scene(self.scene)
         for light in self.scene.lights:
             check_map_size(self.device, light, technique.shadow_map)
-        if VISIBILITIES[technique.visibility].polygons:
-            check_polygons(self.device)
+        VISIBILITIES[technique.visibility].check(self.device)
         self.device.begin_drawing()
         try:
             yield

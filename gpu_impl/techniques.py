@@ -8,6 +8,7 @@ from numbers import Integral
 from typing import Any
 
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
+from gpu_impl.lattices import LATTICES
 from gpu_impl.visibilities import VISIBILITIES
 from scenes.errors import InputError
 from scenes.messages import readable
@@ -19,12 +20,15 @@ UPSAMPLINGS = {name: f"upsampling/{name}.glsl" for name in ("bilateral", "neares
 CHOICES: dict[str, Collection[object]] = {
     "visibility": VISIBILITIES,
     "airlight": AIRLIGHT_MODELS,
+    "lattice": LATTICES,
     "downsample": (1, 2, 4, 8),
     "upsample": UPSAMPLINGS,
     # shadows on surfaces: of a light without extent, or filtered to look soft (percentage-closer filtering)
     "surface_shadows": ("hard", "soft"),
     # where the scattering pass reads the shadow map: a texture, or a storage buffer, as the thesis has a buffer
     "shadow_storage": ("texture", "buffer"),
+    # where the visibility learns what lies in the dark: the shadow map, or rays that the reference casts, a control
+    "shadow_source": ("map", "rays"),
     # how surface and airlight come together: with fog on both of the surface light's legs, or as Weng 2010, Eq. 14,
     # prints it, without fog between light and surface
     "composition": ("physical", "printed"),
@@ -44,8 +48,10 @@ class Technique:
     visibility, airlight : str    which parts it is made of
     steps : int                   samples of the visibility along a ray
     shadow_map : int              texels on a side of each shadow-map tile
-    downsample : int              every how many pixels fog is evaluated, in x and in y
-    upsample, surface_shadows, shadow_storage, composition : str    see `CHOICES`
+    lattice : str                 which rays fog is evaluated on
+    downsample : int              every how many pixels, in x and in y: how coarse a lattice is
+    upsample : str                how the grid's values come to all pixels; other lattices have a way of their own
+    surface_shadows, shadow_storage, shadow_source, composition : str    see `CHOICES`
     """
 
     name: str
@@ -53,10 +59,12 @@ class Technique:
     airlight: str
     steps: int = 64
     shadow_map: int = 1024
+    lattice: str = "grid"
     downsample: int = 1
     upsample: str = "bilateral"
     surface_shadows: str = "hard"
     shadow_storage: str = "texture"
+    shadow_source: str = "map"
     composition: str = "physical"
 
     def check(self) -> None:
@@ -78,6 +86,21 @@ class Technique:
                     raise InputError(f"downsample is {value}; use {choices}.")
                 what = "airlight model" if setting == "airlight" else setting.replace("_", " ")
                 raise InputError(f"There is no {what} '{readable(str(value))}'; use one of {choices}.")
+        if VISIBILITIES[self.visibility].grid_only and self.lattice != "grid":
+            raise InputError(
+                f"The visibility {self.visibility} draws on the image's pixels, and the lattice {self.lattice} has "
+                "others: use lattice grid, or another visibility such as exact."
+            )
+        if self.shadow_source == "rays" and not VISIBILITIES[self.visibility].asks_points:
+            raise InputError(
+                f"The visibility {self.visibility} does not ask about points, so that rays cannot answer in place of the "
+                "shadow map: leave shadow_source out, or use the visibility given."
+            )
+
+    @property
+    def asks_rays(self) -> bool:
+        """Whether it is told by ray casting what is lit: a control, whose cost means nothing."""
+        return VISIBILITIES[self.visibility].given or self.shadow_source == "rays"
 
     def check_scene(self, scene: Scene) -> None:
         """Raise InputError where the airlight model cannot take the scene's phase function or one of its lights."""
@@ -128,8 +151,12 @@ TECHNIQUES = {
         # repaired, by the exact forms of all phase functions that have one
         Technique("Weng2010", "lit_intervals", "one_ei", steps=CELL_STEPS),
         *_variants_of_weng2010(),
+        Technique("Chen2011", "min_max", "quadrature", lattice="epipolar", downsample=4),
         # the artefact of Weng 2010, Figure 1.1
         Technique("FrontFinal", "front_final", "one_ei", steps=CELL_STEPS),
+        Technique("Dobashi2002", "slices", "riemann"),
+        Technique("James2003", "shadow_faces", "depth_fog"),
+        Technique("Wyman2008", "bounded_march", "sun2005", steps=CELL_STEPS),
     )
 }
 

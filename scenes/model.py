@@ -48,18 +48,24 @@ class Camera:
         """Tangent of half the vertical field of view (square pixels)."""
         return self.tan_half_x * self.height / self.width
 
-    def rays(self) -> tuple[Array, Array, Array]:
-        """Rays through the pixel centres, row 0 at the top.
+    def rays(self, positions: Array | None = None) -> tuple[Array, Array, Array]:
+        """Rays through the pixel centres, row 0 at the top, or through other places in the image.
+
+        Parameters
+        ----------
+        positions : (h, w, 2)    x and y [pixel], (0.5, 0.5) in the first pixel's centre; the centres of all by default
 
         Returns
         -------
-        origin : (height, width, 3)       on the near plane
+        origin : (height, width, 3)       on the near plane; (h, w, 3) where positions are given, and so on
         direction : (height, width, 3)    unit length
         t_max : (height, width)           distance from the origin to the far plane [scene unit]
         """
-        x = (1 - (2 * np.arange(self.width) + 1) / self.width) * self.tan_half_x
-        y = (1 - (2 * np.arange(self.height) + 1) / self.height) * self.tan_half_y
-        local = np.stack([*np.meshgrid(x, y), np.ones((self.height, self.width))], axis=-1)
+        if positions is None:
+            positions = np.stack(np.meshgrid(np.arange(self.width) + 0.5, np.arange(self.height) + 0.5), axis=-1)
+        x = (1 - 2 * positions[..., 0] / self.width) * self.tan_half_x
+        y = (1 - 2 * positions[..., 1] / self.height) * self.tan_half_y
+        local = np.stack([x, y, np.ones_like(x)], axis=-1)
         stretch = np.linalg.norm(local, axis=-1)
         # einsum, not matmul, for the fixed summation order
         direction = np.einsum("ij,hwj->hwi", self.to_world[:3, :3], local / stretch[..., None])

@@ -8,6 +8,7 @@ from typing import Any
 
 from experiments.metrics import measure
 from experiments.provenance import describe_frame, describe_reference, describe_scene
+from experiments.renderers import open_renderer
 from gpu_impl.frame import Frame
 from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import find_technique
@@ -55,7 +56,7 @@ def study(
         tell(f"{scene.name}, {phase}: reference")
         truth = deterministic_reference(scene)
         tell(f"{scene.name}, {phase}: {technique}")
-        with Renderer(scene) as renderer:
+        with open_renderer(scene) as renderer:
             yield [_row(renderer, scene, truth, technique, phase, *found) for found in settings()]
 
 

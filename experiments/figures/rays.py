@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.figures.plane import Array, RayPlane
+from gpu_impl.device import read
 from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import find_technique
+from gpu_impl.visibilities.shadow_polygons import repaired
 from reference.deterministic import LitIntervals, lit_intervals
 from scenes.model import Scene
 
@@ -137,10 +139,9 @@ def _drawn_polygons(scene: Scene) -> tuple[Array, Array]:
     technique = find_technique("Weng2010")
     with Renderer(scene) as renderer:
         view = renderer.passes.see(technique)
-        texture = renderer.passes.shadow_polygons(technique, view)
-        shape = (len(scene.lights), scene.camera.height, scene.camera.width, 2)
-        found = np.frombuffer(texture.read(), np.float32).reshape(shape)[0].astype(float)
-        renderer.device.give_back(texture)
+        polygons = repaired(renderer.passes.inputs(technique, view, 0))
+        found = read(polygons.texture).astype(float)
+        polygons.give_back(renderer.device)
         view.give_back(renderer.device)
         depth = renderer.render(technique).depth.astype(float)
     none = found[..., 0] > 1e38

@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import Any, Self, TypeVar
 
 from experiments.figures.rays import RayField
+from experiments.renderers import open_renderer
 from gpu_impl.device import shared_device
 from gpu_impl.frame import Frame
 from gpu_impl.renderer import Renderer
@@ -75,7 +76,7 @@ class Stage:
         """What draws a scene; it stays open."""
 
         def make() -> Renderer:
-            self._renderers.append(Renderer(scene))
+            self._renderers.append(open_renderer(scene))
             return self._renderers[-1]
 
         return self.once(("renderer", scene.digest, scene.camera.width, scene.camera.height), make)

@@ -11,10 +11,10 @@ from experiments.figures.stage import Stage
 from experiments.intervals import FEWEST_ROUNDS, Array, median_interval
 from experiments.markdown import table
 from experiments.palette import OKABE_ITO
+from experiments.renderers import open_renderer
 from experiments.rounds import time_in_rounds
 from experiments.technique_benchmark.budget import load_within
 from experiments.technique_benchmark.contenders import FAST, TABLE_5_1
-from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import find_technique
 
 # as the thesis's frames; its meshes' triangles are not stated
@@ -56,7 +56,7 @@ def rates(stage: Stage) -> list[Rate]:
 def _rate(stage: Stage, name: str, phase: str) -> Rate:
     scene = load_within(name, TRIANGLES, (SIDE, SIDE), phase=phase)
     techniques = {short: find_technique(technique, **FAST) for short, technique in TIMED.items()}
-    with Renderer(scene) as renderer:
+    with open_renderer(scene) as renderer:
         times = time_in_rounds(
             renderer,
             techniques,

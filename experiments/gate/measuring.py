@@ -8,10 +8,10 @@ from typing import Any
 
 from experiments.measurements import find_measurement
 from experiments.measurements.shot import Shot
+from experiments.renderers import open_renderer
 from experiments.run.truth import Truth
 from experiments.run.work import load_case
 from experiments.suite import Case
-from gpu_impl.renderer import Renderer
 from scenes.errors import InputError
 from scenes.model import Scene
 
@@ -45,7 +45,7 @@ def measure_cases(cases: Sequence[Case], drawn: Callable[[Scene], Scene] = lambd
         by_view.setdefault(case.view, []).append(case)
     for alike in by_view.values():
         scene = load_case(alike[0])
-        with Renderer(drawn(scene)) as renderer:
+        with open_renderer(drawn(scene)) as renderer:
             for case in alike:
                 values[case.name] = _values(Shot(case, scene, renderer, truth))
     return values

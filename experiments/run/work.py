@@ -16,6 +16,7 @@ from experiments.measurements.shot import Shot
 from experiments.metrics import Metrics
 from experiments.pictures import write_case
 from experiments.provenance import describe_frame, describe_reference, describe_scene
+from experiments.renderers import open_renderer
 from experiments.run.folder import RunError, code_digest, keep_row
 from experiments.run.rows import Row, identity
 from experiments.run.truth import Truth
@@ -93,7 +94,7 @@ class Bench:
         key = case.view[:-1]
         if self._renderer is None or key != self._key:
             self.release()
-            self._renderer, self._key = Renderer(load_case(case)), key
+            self._renderer, self._key = open_renderer(load_case(case)), key
         return self._renderer
 
     def _reference(self, progress: Progress) -> None:

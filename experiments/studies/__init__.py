@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # by the names that suites call them; imported when they are asked for
-STUDIES = {name: f"experiments.studies.{name}" for name in ("errors", "aliasing", "downsampling", "timing")}
+STUDIES = {name: f"experiments.studies.{name}" for name in ("errors", "aliasing", "downsampling", "timing", "pareto")}
 
 
 @dataclass(frozen=True)

@@ -55,10 +55,12 @@ class Settings(_Strict):
 
     steps: Several[Whole] | None = None
     shadow_map: Several[Whole] | None = None
+    lattice: Several[str] | None = None
     downsample: Several[Whole] | None = None
     upsample: Several[str] | None = None
     surface_shadows: Several[str] | None = None
     shadow_storage: Several[str] | None = None
+    shadow_source: Several[str] | None = None
     composition: Several[str] | None = None
 
     @field_validator(*SETTINGS)

@@ -11,7 +11,8 @@ from typing import Any
 
 from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import Device
-from gpu_impl.lattice import Lattice
+from gpu_impl.lattices.grid import Grid
+from gpu_impl.lattices.lattice import Lattice
 from gpu_impl.light_uniforms import fog_defines, fog_uniforms
 from gpu_impl.passes.geometry import GBuffer
 from gpu_impl.shader_source import set_uniforms
@@ -30,19 +31,21 @@ def combine(
     gbuffer: GBuffer,
     surface: Any,
     airlight: Any,
+    step: int,
 ) -> None:
     """Bring `airlight` to full resolution and put it together with the light that `surface` holds.
 
     Parameters
     ----------
+    step : int               airlight is of the grid of every `step`-th pixel
     targets : one texture for the composite, or two for the surface's light as it reaches the eye and the airlight
     surface : RGBA32F    light as it leaves the surfaces
-    airlight : RGBA32F   airlight and pieces, evaluated on every `technique.downsample`-th pixel
+    airlight : RGBA32F   airlight and pieces
     """
     uniforms = camera_uniforms(scene.camera) | fog_uniforms(scene) | UNITS
-    uniforms |= Lattice.of(scene.camera, technique.downsample).uniforms | gbuffer.bind(FIRST_GBUFFER_UNIT)
+    uniforms |= Grid.of(scene.camera, step).uniforms | gbuffer.bind(FIRST_GBUFFER_UNIT)
     surface.use(UNITS["surface"])
-    defines = fog_defines(scene) | {"SPLIT": int(len(targets) == 2), "DOWNSAMPLED": int(technique.downsample > 1)}
+    defines = fog_defines(scene) | {"SPLIT": int(len(targets) == 2), "DOWNSAMPLED": int(step > 1)}
 
     def program(upsampling: str, vertex: str) -> Any:
         includes = {"<upsampling>": UPSAMPLINGS[upsampling]}
@@ -53,11 +56,30 @@ def combine(
     with _interpolated(device, airlight, UNITS["scattering"]):
         # where the evaluated pixels around one see one surface, so nearly everywhere, all upsamplings are bilinear
         device.fill(program("bilinear", "fullscreen.vert.glsl"), *targets)
-        if technique.downsample > 1 and technique.upsample != "bilinear":
+        if step > 1 and technique.upsample != "bilinear":
             cells = _cells(device, airlight.size, uniforms)
             cells.use(UNITS["cells"])
             _draw_points(device, program(technique.upsample, "upsampling/edges.vert.glsl"), targets, cells)
             device.give_back(cells)
+
+
+def reconstruct(
+    device: Device, target: Any, lattice: Lattice, scene: Scene, gbuffer: GBuffer, airlight: Any, *, first: bool
+) -> None:
+    """Bring one light's airlight from a lattice of its own to full resolution, as that lattice says.
+
+    Parameters
+    ----------
+    target : RGBA32F      of the image's size; written by the first light, added to by others
+    airlight : RGBA32F    airlight and pieces on the lattice's cells
+    """
+    program = device.program(
+        "reconstruction.frag.glsl", includes={"<reconstruction>": str(lattice.kind.reconstruction)}
+    )
+    set_uniforms(program, camera_uniforms(scene.camera) | lattice.uniforms | {"scattering": UNITS["scattering"]})
+    set_uniforms(program, gbuffer.bind(FIRST_GBUFFER_UNIT))
+    with _interpolated(device, airlight, UNITS["scattering"]):
+        device.fill(program, target, add=not first)
 
 
 @contextmanager

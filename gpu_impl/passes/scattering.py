@@ -3,77 +3,94 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
 from analytic.phase import Phase
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
-from gpu_impl.blue_noise import blue_noise_uniforms
 from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import Device
-from gpu_impl.lattice import Lattice
 from gpu_impl.light_uniforms import light_defines, light_uniforms
-from gpu_impl.passes.geometry import GBuffer
-from gpu_impl.passes.shadow_map import ShadowMap
-from gpu_impl.passes.shadow_volume import bind_polygons
 from gpu_impl.shader_source import set_uniforms
-from gpu_impl.techniques import Technique
-from gpu_impl.textures import PictureTextures
 from gpu_impl.visibilities import VISIBILITIES
-from scenes.model import Light, Scene
+from gpu_impl.visibilities.strategy import FogInputs, Supply
 
 # what a counting build counts, in the order of the channels of shaders/counting.glsl
 COUNTERS = ("pieces", "shadow_map_reads", "exponential_integrals", "exponentials")
 # binding of `phase_table` in phase/tabulated.glsl
 PHASE_TABLE = 3
+# texture unit of the airlight model's table, behind those that strategies take
+TABLE_UNIT = 14
 
 
 def add_scattering(
-    device: Device,
-    target: Any,
-    technique: Technique,
-    scene: Scene,
-    light: Light,
-    gbuffer: GBuffer,
-    shadow_map: ShadowMap,
-    pictures: PictureTextures,
-    *,
-    polygons: Any = None,
-    layer: int = 0,
-    counts: Any = None,
-    first: bool,
+    target: Any, inputs: FogInputs, supply: Supply, *, counts: Any = None, recording: Any = None, first: bool
 ) -> None:
-    """Write the first light's airlight to `target`, every N-th pixel of the image, or add another's.
+    """Write the first light's airlight to `target`, or add another's.
 
     Parameters
     ----------
-    polygons : what `render_shadow_polygons` drew, where the visibility asks for it; this light's are in `layer`
-    counts : RGBA32F    of the target's size, a channel for each of `COUNTERS`; None where nothing is counted
+    target : RGBA32F            of the lattice's size
+    supply : Supply             what the technique's visibility made for this light
+    counts : RGBA32F            of the same size, a channel for each of `COUNTERS`; None where nothing is counted
+    recording : Recording       keeps the pieces; None where nobody asks
     """
+    device, technique, scene, light = inputs.device, inputs.technique, inputs.scene, inputs.light
     model, strategy = AIRLIGHT_MODELS[technique.airlight], VISIBILITIES[technique.visibility]
     program = device.program(
         "scattering.frag.glsl",
+        strategy.vertex,
         defines=light_defines(scene, light)
-        | shadow_map.defines
-        | {"STEPS": technique.steps}
-        | ({"COUNTING": 1} if counts else {}),
+        | inputs.shadow_map.defines
+        | {
+            "STEPS": technique.steps,
+            "SHADOW_GIVEN": int(inputs.given is not None),
+            "AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners),
+        }
+        | strategy.defines
+        | supply.defines
+        | ({"COUNTING": 1} if counts else {})
+        | ({"RECORDING": 1} if recording else {}),
         includes={
             "<airlight>": model.source,
             "<visibility>": strategy.source,
+            "<lattice>": inputs.lattice.kind.source,
             "<phase>": f"phase/{scene.phase.name}.glsl",
         },
         generated=model.generated(scene.phase),
     )
-    set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, pictures))
-    set_uniforms(program, shadow_map.bind(unit=0) | gbuffer.bind(first_unit=1))
-    set_uniforms(program, Lattice.of(scene.camera, technique.downsample).uniforms)
-    if polygons:
-        set_uniforms(program, bind_polygons(polygons, layer))
-    noise = blue_noise_uniforms(device, program) if strategy.blue_noise else nullcontext()
-    with phase_uniforms(device, program, scene.phase), noise:
-        device.fill(program, *filter(None, (target, counts)), add=not first)
+    set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, inputs.pictures))
+    set_uniforms(program, inputs.shadow_map.bind(unit=0) | inputs.gbuffer.bind(first_unit=1))
+    set_uniforms(program, inputs.lattice.uniforms)
+    bind_table(program, inputs)
+    for part in (supply, inputs.given, recording):
+        if part:
+            part.bind(program)
+    with phase_uniforms(device, program, scene.phase):
+        supply.draw(device, program, tuple(filter(None, (target, counts))), add=not first)
+
+
+def bind_table(program: Any, inputs: FogInputs) -> None:
+    """Bind the airlight model's table, where it has one."""
+    name, phase = inputs.technique.airlight, inputs.scene.phase
+    make = AIRLIGHT_MODELS[name].table
+    if make is None:
+        return
+    table = inputs.kept.get(("table", name, phase), lambda: _table_texture(inputs.device, make(phase)))
+    table.use(TABLE_UNIT)
+    set_uniforms(program, {"airlight_table": TABLE_UNIT})
+
+
+def _table_texture(device: Device, values: np.ndarray) -> Any:
+    """A table (rows, columns) or (rows, columns, components) as a texture that ends in its border's values."""
+    rows, columns, *components = values.shape
+    context = device.context
+    texture = context.texture((columns, rows), *(components or [1]), np.ascontiguousarray(values, "f4"), dtype="f4")
+    texture.repeat_x = texture.repeat_y = False
+    texture.filter = (context.LINEAR, context.LINEAR)
+    return texture
 
 
 @contextmanager

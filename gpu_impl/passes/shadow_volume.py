@@ -1,4 +1,4 @@
-"""The shadow-volume pass: on each ray of the lattice the first and the last shadow polygon of each light.
+"""The shadow-volume pass: on each ray of the grid the first and the last shadow polygon of a light.
 
 "User just creates the frontmost shadow polygon and the final shadow polygon from the eye view" (Weng 2010, section 1.2;
 "front distance" and "final distance" of Figure 4.7). Edges of the light's silhouette are gathered on the GPU and drawn
@@ -12,7 +12,7 @@ from typing import Any
 
 from gpu_impl.camera_uniforms import camera_uniforms, world_to_clip
 from gpu_impl.device import Device
-from gpu_impl.lattice import Lattice
+from gpu_impl.lattices.grid import GRID, Grid
 from gpu_impl.light_uniforms import light_defines, light_uniforms
 from gpu_impl.passes.geometry import GBuffer
 from gpu_impl.passes.shadow_map import ShadowMap
@@ -24,8 +24,6 @@ from scenes.model import Array, Camera, Light, Scene
 
 # what a ray without a shadow polygon holds
 NO_CROSSING = 3e38
-# texture unit in the scattering pass, which binds shadow map, G-buffer and a spot's picture below
-POLYGONS_UNIT = 9
 # invocations of a work group of silhouette.comp.glsl
 GROUP = 128
 # work groups along one axis that every OpenGL takes; more are silently none
@@ -48,15 +46,15 @@ def render_shadow_polygons(
     device: Device,
     adjacency: Adjacency,
     scene: Scene,
-    lights: tuple[Light, ...],
+    light: Light,
     gbuffer: GBuffer,
-    shadow_maps: tuple[ShadowMap, ...],
+    shadow_map: ShadowMap,
     pictures: PictureTextures,
     *,
-    lattice: Lattice,
+    grid: Grid,
     repaired: bool,
 ) -> Any:
-    """Draw the shadow polygons of all lights; the caller gives the texture back.
+    """Draw the shadow polygons of one light; the caller gives the texture back.
 
     Parameters
     ----------
@@ -65,69 +63,57 @@ def render_shadow_polygons(
 
     Returns
     -------
-    texture array RG32F, a layer for each light
-        Of the lattice's size: t of the first crossing and -t of the last, along the ray as the contract has it [scene
+    texture RG32F
+        Of the grid's size: t of the first crossing and -t of the last, along the ray as the contract has it [scene
         unit]; NO_CROSSING in both where there is none.
     """
     context, camera = device.context, scene.camera
-    polygons = device.texture((*lattice.size, len(lights)), 2)
-    # drawn one by one and copied: to draw into a layer takes more than OpenGL 4.3's core has in a vertex shader
-    crossings, limits = device.texture(lattice.size, 2), device.texture(lattice.size, 4)
-    transfer = device.buffer(2 * 4 * lattice.size[0] * lattice.size[1])
-    pixels = camera_uniforms(camera) | lattice.uniforms
-    drawn = pixels | {"limits": 0, "world_to_lattice": world_to_lattice(camera, lattice)}
+    crossings, limits = device.texture(grid.size, 2), device.texture(grid.size, 4)
+    pixels = camera_uniforms(camera) | grid.uniforms
+    drawn = pixels | {"limits": 0, "world_to_lattice": world_to_grid(camera, grid)}
     adjacency.bind()
-    for layer, (light, shadow_map) in enumerate(zip(lights, shadow_maps, strict=True)):
-        defines = light_defines(scene, light) | shadow_map.defines | {"CULL": int(repaired)}
-        uniforms = light_uniforms(scene, light, pictures) | shadow_map.bind(unit=0)
-        # no corners of one instance; `reach` grows to what is seen, or is without end from the beginning
-        adjacency.draw_call.write(struct.pack("4If", 0, 1, 0, 0, 0.0 if repaired else NO_CROSSING))
-        narrow = device.program("shadow_volume/limits.frag.glsl", defines=defines)
-        set_uniforms(narrow, pixels | uniforms | gbuffer.bind(first_unit=1))
-        device.fill(narrow, limits)
-        context.memory_barrier()
-        gather = device.compute("shadow_volume/silhouette.comp.glsl", defines)
-        set_uniforms(gather, uniforms | {"edge_count": adjacency.edge_count})
-        groups = -(-adjacency.edge_count // GROUP)
-        gather.run(min(groups, MOST_GROUPS), -(-groups // MOST_GROUPS))
-        context.memory_barrier()
-        program = device.program("shadow_volume/polygon.frag.glsl", "shadow_volume/polygon.vert.glsl", defines)
-        set_uniforms(program, drawn | uniforms)
-        array = context.vertex_array(program, [])
-        target = context.framebuffer(color_attachments=[crossings])
-        target.clear(NO_CROSSING, NO_CROSSING)
-        limits.use(0)
-        target.use()
-        context.enable(context.BLEND)
-        context.blend_equation = context.MIN
-        array.render_indirect(adjacency.draw_call, context.TRIANGLES, count=1)
-        context.blend_equation = context.FUNC_ADD
-        context.disable(context.BLEND)
-        array.release()
-        target.release()
-        crossings.read_into(transfer)
-        polygons.write(transfer, viewport=(0, 0, layer, *lattice.size, 1))
-    device.give_back(crossings, limits, transfer)
-    return polygons
+    defines = light_defines(scene, light) | shadow_map.defines | {"CULL": int(repaired)}
+    uniforms = light_uniforms(scene, light, pictures) | shadow_map.bind(unit=0)
+    # no corners of one instance; `reach` grows to what is seen, or is without end from the beginning
+    adjacency.draw_call.write(struct.pack("4If", 0, 1, 0, 0, 0.0 if repaired else NO_CROSSING))
+    narrow = device.program("shadow_volume/limits.frag.glsl", defines=defines, includes={"<lattice>": GRID.source})
+    set_uniforms(narrow, pixels | uniforms | gbuffer.bind(first_unit=1))
+    device.fill(narrow, limits)
+    context.memory_barrier()
+    gather = device.compute("shadow_volume/silhouette.comp.glsl", defines)
+    set_uniforms(gather, uniforms | {"edge_count": adjacency.edge_count})
+    groups = -(-adjacency.edge_count // GROUP)
+    gather.run(min(groups, MOST_GROUPS), -(-groups // MOST_GROUPS))
+    context.memory_barrier()
+    program = device.program("shadow_volume/polygon.frag.glsl", "shadow_volume/polygon.vert.glsl", defines)
+    set_uniforms(program, drawn | uniforms)
+    array = context.vertex_array(program, [])
+    target = context.framebuffer(color_attachments=[crossings])
+    target.clear(NO_CROSSING, NO_CROSSING)
+    limits.use(0)
+    target.use()
+    context.enable(context.BLEND)
+    context.blend_equation = context.MIN
+    array.render_indirect(adjacency.draw_call, context.TRIANGLES, count=1)
+    context.blend_equation = context.FUNC_ADD
+    context.disable(context.BLEND)
+    array.release()
+    target.release()
+    device.give_back(limits)
+    return crossings
 
 
-def bind_polygons(polygons: Any, layer: int) -> dict[str, Any]:
-    """Bind what `render_shadow_polygons` drew and give the uniforms of shadow_region.glsl for one light."""
-    polygons.use(POLYGONS_UNIT)
-    return {"shadow_polygons": POLYGONS_UNIT, "polygon_layer": layer}
-
-
-def world_to_lattice(camera: Camera, lattice: Lattice) -> Array:
-    """World to the clip space of the lattice, (4, 4), whose pixels are centred where those of the image are.
+def world_to_grid(camera: Camera, grid: Grid) -> Array:
+    """World to the clip space of the grid, (4, 4), whose pixels are centred where those of the image are.
 
     Depth is made so that OpenGL clips at half the near plane and nowhere else; points without end (w = 0) keep theirs.
     """
     clip = world_to_clip(camera)
     matrix = clip.copy()
     for row, pixels in enumerate((camera.width, camera.height)):
-        # in pixels of the image from its corner: x = N (p + 1/2) + shift at the centre of the lattice's pixel p
-        shift = (1 - lattice.step) / 2 + lattice.first[row]
-        covered = lattice.size[row] * lattice.step
+        # in pixels of the image from its corner: x = N (p + 1/2) + shift at the centre of the grid's pixel p
+        shift = (1 - grid.step) / 2 + grid.first[row]
+        covered = grid.size[row] * grid.step
         matrix[row] = (pixels * clip[row] + (pixels - covered - 2 * shift) * clip[3]) / covered
     matrix[2] = clip[3] - [0, 0, 0, camera.near]
     return matrix

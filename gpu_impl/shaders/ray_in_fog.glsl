@@ -1,15 +1,22 @@
-// The part of a lattice pixel's ray in which fog scatters a light towards the eye.
+// The part of a lattice cell's ray in which fog scatters a light towards the eye.
 #include "camera_ray.glsl"
 #include "fog.glsl"
-#include "lattice.glsl"
+#include "<lattice>"
 
 uniform sampler2D normal_and_distance;   // distance 0: no surface, the ray ends on the far plane
 
 // A ray that begins in the fog and ends in it, since what is before does not weaken it; it begins `start` behind where
-// camera_ray() does. t_max is not positive where there is no fog.
-Ray ray_in_fog(ivec2 pixel, Light light, out float start) {
-    Ray ray = camera_ray(pixel);
-    float surface = texelFetch(normal_and_distance, pixel, 0).w;
+// camera_ray() does. It ends at the surface that the pixel sees in which it lies. t_max is not positive where there is
+// no fog, or where the lattice has no ray.
+Ray ray_in_fog(ivec2 cell, Light light, out float start) {
+    vec2 position = position_of(cell);
+    Ray ray = camera_ray(position);
+    start = 0.0;
+    if (any(lessThan(position, vec2(0.0))) || any(greaterThanEqual(position, vec2(image_size)))) {
+        ray.t_max = 0.0;
+        return ray;
+    }
+    float surface = texelFetch(normal_and_distance, ivec2(position), 0).w;
     if (surface > 0.0) ray.t_max = surface;
     vec2 fog = fog_interval(ray.o, ray.d, vec2(0.0, ray.t_max));
     start = fog.x;

@@ -1,6 +1,8 @@
-// The driver: evaluates one technique for one light on every N-th pixel. Its result is added to that of other lights.
-// rgb: airlight L_m, the radiance that fog scatters to the eye; a: lit intervals that the strategy reported.
+// The driver: evaluates one technique for one light on each cell of its lattice. Its result is added to that of other
+// lights. rgb: airlight L_m, the radiance that fog scatters to the eye; a: lit pieces that the strategy reported.
 #include "ray_in_fog.glsl"
+#include "current_ray.glsl"
+#include "recording.glsl"
 #include "light.glsl"
 #include "<airlight>"
 #include "<visibility>"
@@ -8,11 +10,18 @@
 uniform Light light;
 layout(location = 0) out vec4 result;
 
-Ray the_ray;
 vec2 the_cone;
+
+#if AIRLIGHT_AT_CORNERS == 1
+in vec3 corner_airlight;   // of whole pieces under a light that is alike in all directions
+#endif
 
 void lit(float t0, float dt, float w) {
     result.a += 1.0;
+#if AIRLIGHT_AT_CORNERS == 1
+    COUNT_PIECE;
+    result.rgb += w * angular(light, current_ray.o + (t0 + 0.5 * dt) * current_ray.d) * corner_airlight;
+#else
     if (CLIP_TO_CONE) {
         float begin = max(t0, the_cone.x), end = min(t0 + dt, the_cone.y);
         if (begin >= end) return;
@@ -20,16 +29,17 @@ void lit(float t0, float dt, float w) {
         t0 = begin;
     }
     COUNT_PIECE;
-    result.rgb += w * airlight(the_ray, light, t0, dt);
+    RECORD_PIECE(t0, dt, w);
+    result.rgb += w * airlight(current_ray, light, t0, dt);
+#endif
 }
 
 void main() {
-    float start;
-    the_ray = ray_in_fog(pixel_of(ivec2(gl_FragCoord.xy)), light, start);
+    current_ray = ray_in_fog(ivec2(gl_FragCoord.xy), light, current_start);
     result = vec4(0.0);
     START_COUNTING;
-    if (the_ray.t_max <= 0.0) return;
+    if (current_ray.t_max <= 0.0) return;
     // without the ray's end: pieces end there by themselves, but for those that are taken away behind it (printed.glsl)
-    the_cone = cone_interval(Ray(the_ray.o, the_ray.d, 3e38), light);
-    visibility(the_ray, light);
+    the_cone = cone_interval(Ray(current_ray.o, current_ray.d, 3e38), light);
+    visibility(current_ray, light);
 }

@@ -1,6 +1,7 @@
 // The shadow map: distance from the light to the nearest surface, one texel per direction. A narrow spot and
 // parallel light have one tile; any other light has the six faces of a cube side by side.
 #include "contract.glsl"
+#include "given.glsl"
 
 #ifdef SHADOW_BUFFER
 layout(std430, binding = SHADOW_BUFFER) readonly buffer ShadowTexels { float shadow_texels[]; };
@@ -59,4 +60,9 @@ float distance_from(Light light, vec3 point) {
     return DIRECTIONAL == 1 ? dot(point - light.position, light.direction) : distance(point, light.position);
 }
 
+#if SHADOW_GIVEN == 1
+// The map is left aside: `point` is one of this invocation's ray.
+bool in_shadow(Light light, vec3 point) { return in_given_shadow(point); }
+#else
 bool in_shadow(Light light, vec3 point) { return distance_from(light, point) > nearest_surface(light, point); }
+#endif

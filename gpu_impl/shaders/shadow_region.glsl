@@ -5,14 +5,13 @@
 // the ray is as one of its points is, and the middle of such a part is the one that the shadow map's texels mistake last.
 #include "shadow_lookup.glsl"
 
-uniform sampler2DArray shadow_polygons;   // passes/shadow_volume.py
-uniform int polygon_layer;                // of the light that is drawn
+uniform sampler2D shadow_polygons;   // passes/shadow_volume.py
 
 const float NO_CROSSING = 3e38;
 
 // First and last shadow polygon, NO_CROSSING and its negative where there is none.
 vec2 front_and_final() {
-    vec2 found = texelFetch(shadow_polygons, ivec3(gl_FragCoord.xy, polygon_layer), 0).xy;
+    vec2 found = texelFetch(shadow_polygons, ivec2(gl_FragCoord.xy), 0).xy;
     return vec2(found.x, -found.y);
 }
 
@@ -20,7 +19,7 @@ vec2 front_and_final() {
 // its middle says so, which is for those who take samples there: in vain it costs them samples and nothing else.
 bool is_dark(Ray ray, Light light, float begin, float end, bool care) {
     vec3 point = ray.o + 0.5 * (begin + end) * ray.d;
-    if (!care) return in_shadow(light, point);
+    if (!care || SHADOW_GIVEN == 1) return in_shadow(light, point);
     vec3 position = map_position(light, point);
     if (position.z < 0.0) return false;
     float here = distance_from(light, point);

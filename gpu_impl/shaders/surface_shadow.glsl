@@ -37,19 +37,24 @@ Receiver receiver_of(Light light, vec3 point, vec3 normal, vec3 position) {
     return Receiver(point, normal, position, d, slack, slack * min(0.25 * slope, 0.5));
 }
 
+// Distance from the light at which the receiver's plane passes before the middle of a texel, `centre`; of any sign, and
+// without bound where it passes edge on.
+float plane_distance(Light light, Receiver receiver, vec3 centre) {
+#if DIRECTIONAL == 1
+    vec3 x = tile_row(0), y = tile_row(1);
+    vec2 offset = centre.xy - receiver.position.xy;
+    vec3 aside = offset.x * x / dot(x, x) + offset.y * y / dot(y, y);
+    return receiver.distance - dot(receiver.normal, aside) / dot(receiver.normal, light.direction);
+#else
+    vec3 way = normalize(texel_direction(centre));
+    return dot(receiver.normal, receiver.point - light.position) / dot(receiver.normal, way);
+#endif
+}
+
 // Whether a texel sees the receiver; apart: how many texels lie between the two, 1 for the receiver's own.
 bool is_lit_in(Light light, Receiver receiver, ivec2 texel, float tile, float apart) {
     vec3 centre = vec3(middle_of(texel), tile);
-    float here;
-    if (DIRECTIONAL == 1) {
-        vec3 x = tile_row(0), y = tile_row(1);
-        vec2 offset = centre.xy - receiver.position.xy;
-        vec3 aside = offset.x * x / dot(x, x) + offset.y * y / dot(y, y);
-        here = receiver.distance - dot(receiver.normal, aside) / dot(receiver.normal, light.direction);
-    } else {
-        vec3 way = normalize(texel_direction(centre));
-        here = dot(receiver.normal, receiver.point - light.position) / dot(receiver.normal, way);
-    }
+    float here = plane_distance(light, receiver, centre);
     float steepest = STEEPEST * apart * receiver.slack;
     if (!(abs(here - receiver.distance) < steepest)) here = receiver.distance - steepest;
     return here - apart * receiver.bias - 1e-4 * receiver.distance <= stored_distance(texel, centre);

@@ -82,13 +82,26 @@ class Search:
     steps: NDArray[np.uint32]
 
 
-def lit_intervals(scene: Scene) -> LitIntervals:
-    """Lit intervals of a scene; see `search`."""
+def lit_intervals(scene: Scene, positions: Array | None = None) -> LitIntervals:
+    """Lit intervals of a scene's pixels, or of rays through other positions; see `search`.
+
+    Parameters
+    ----------
+    positions : (h, w, 2)    as `Camera.rays` takes them; neighbours there are to be neighbours in the image
+    """
     shadow_rays = ShadowRays(scene)
-    return search(shadow_rays, Rays.of_camera(scene, shadow_rays.t_end()), scene).intervals
+    rays = Rays.of_camera(scene, shadow_rays.t_end(positions), positions)
+    shape = None if positions is None else positions.shape[:2]
+    return search(shadow_rays, rays, scene, shape=shape).intervals
 
 
-def search(shadow_rays: ShadowRays, rays: Rays, scene: Scene, steps: tuple[int, ...] = STEPS) -> Search:
+def search(
+    shadow_rays: ShadowRays,
+    rays: Rays,
+    scene: Scene,
+    steps: tuple[int, ...] = STEPS,
+    shape: tuple[int, int] | None = None,
+) -> Search:
     """Find the lit intervals of every ray.
 
     Probes stand at equal steps of the angle at which the light sees them (along a directional light's rays at equal
@@ -104,11 +117,12 @@ def search(shadow_rays: ShadowRays, rays: Rays, scene: Scene, steps: tuple[int, 
 
     Parameters
     ----------
-    rays : Rays             of all pixels of the scene
+    rays : Rays             of all pixels of the scene, or of the places in `shape`
     steps : tuple of int    between the probes of a ray, even: of all rays, then of those that are doubtful, then of
                             those that still are, and so on
+    shape : (h, w)          in which rays are neighbours; that of the image by default
     """
-    shape = (scene.camera.height, scene.camera.width)
+    shape = shape or (scene.camera.height, scene.camera.width)
     still_open = np.zeros(shape[0] * shape[1], np.bool_)
     fewest = np.full(still_open.size, steps[-1], np.uint32)
     found, found_before = [], []

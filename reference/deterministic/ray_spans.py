@@ -30,9 +30,9 @@ class Rays:
     fog_end: Array
 
     @classmethod
-    def of_camera(cls, scene: Scene, t_end: Array) -> Rays:
-        """Rays of the scene's camera that end at t_end, (pixels,)."""
-        origin, direction, _ = (part.reshape(t_end.size, -1) for part in scene.camera.rays())
+    def of_camera(cls, scene: Scene, t_end: Array, positions: Array | None = None) -> Rays:
+        """Rays of the scene's camera that end at t_end, (pixels,), or those through `positions`, (h, w, 2)."""
+        origin, direction, _ = (part.reshape(t_end.size, -1) for part in scene.camera.rays(positions))
         enter, leave = chord(scene.boundary, origin, direction)
         begin = np.clip(enter, 0, t_end)
         return cls(origin, direction, begin, np.clip(leave, begin, t_end))

@@ -42,19 +42,27 @@ class ShadowRays:
         self._centre, self._radius = np.array(sphere.center, np.float64).ravel(), float(sphere.radius)
         self.extent = float(np.max(np.array(box.max - box.min))) if box.valid() else 0.0
 
-    def t_end(self) -> Array:
+    def t_end(self, positions: Array | None = None) -> Array:
         """How far the ray of each pixel sees, to a surface or the far plane, (pixels,) [scene unit].
+
+        Those through other `positions` in the image, (h, w, 2) as `Camera.rays` takes them, where they are given.
 
         Asked by the estimator's rays to the last bit: of one that grazes a silhouette either answer is right, and two
         rays that differ by a rounding see a near surface and a far one. One pixel of `yeahright` at 256 x 256 did.
         """
         width, height = self._camera.width, self._camera.height
-        pixel = dr.arange(mi.UInt32, width * height)
-        place = mi.Point2f((pixel % width + 0.5) / width, (pixel // width + 0.5) / height)
+        if positions is None:
+            pixel = dr.arange(mi.UInt32, width * height)
+            x, y = pixel % width + 0.5, pixel // width + 0.5
+        else:
+            x, y = (mi.Float(np.ascontiguousarray(part.ravel(), np.float32)) for part in np.moveaxis(positions, -1, 0))
+        place = mi.Point2f(x / width, y / height)
         ray = self._mitsuba.sensor.sample_ray(0.0, 0.0, place, mi.Point2f(0.5))[0]
         path = eye_path(self._mitsuba.scene, ray, self._mitsuba.medium)
         # where nothing stops them they end on the far plane, which the loaded camera knows in float64
-        return np.where(np.array(path.blocked), np.array(path.t_end, np.float64), self._camera.rays()[2].ravel())
+        return np.where(
+            np.array(path.blocked), np.array(path.t_end, np.float64), self._camera.rays(positions)[2].ravel()
+        )
 
     def sees(self, light: Light, point: Any) -> Any:
         """Whether the light sees each point (Point3f or Point3d), Bool."""

@@ -10,7 +10,7 @@ from scene_files import POINT, point, write_scene
 
 from experiments.measurements.banding import OCTAVES, banding, columns, spectrum
 from experiments.measurements.shafts import shaft_direction, vanishing_point
-from gpu_impl.blue_noise import blue_noise
+from gpu_impl.visibilities.blue_noise import blue_noise
 
 SIDE = 256
 Y, X = np.mgrid[:SIDE, :SIDE].astype(float)

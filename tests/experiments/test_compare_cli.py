@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 
 from experiments.exr import write_exr
@@ -78,3 +79,47 @@ def test_what_contradicts_itself_is_refused(airlight, words: list[str], said: st
     assert result.code == 2
     assert said in result.err
     assert not Path("h.png").exists()
+
+
+def test_another_engines_picture_is_compared_with_a_layer_and_its_mistakes_are_named(airlight) -> None:
+    truth = np.random.default_rng(2).uniform(0.1, 1, (8, 6, 3)).astype(np.float32)
+    write_exr(Path("r.exr"), {"composite": truth + 1, "scattering": truth}, {"scene": "sphere"})
+    OpenEXR.File({}, {"RGB": (truth[::-1] / np.float32(np.pi)).astype(np.float16)}).write("engine.exr")
+    result = airlight("compare", "engine.exr", "r.exr", "--layer", "scattering", "--json")
+    assert result.code == 0
+    assert json.loads(result.out)["rel_50"] > 0.5
+    only, better = result.err.splitlines()
+    assert only == "The only picture in engine.exr is taken for its scattering layer."
+    assert better.startswith("engine.exr fits far better upside down and times 3.14")
+    # as it should be, and nothing is left to say of it
+    OpenEXR.File({}, {"RGB": truth}).write("engine.exr")
+    result = airlight("compare", "engine.exr", "r.exr", "--layer", "scattering", "--json")
+    assert json.loads(result.out)["rmse"] == 0
+    assert result.err.splitlines() == [only]
+
+
+def test_which_of_an_engines_pictures_is_meant_has_to_be_plain(airlight) -> None:
+    planes = {f"{view}.{letter}": np.ones((2, 3), np.float32) for view in ("left", "right") for letter in "RGB"}
+    OpenEXR.File({}, planes).write("engine.exr")
+    picture("r.exr", 1)
+    for layer in ("composite", "scattering"):
+        result = airlight("compare", "engine.exr", "r.exr", "--layer", layer)
+        assert result.code == 2
+        assert f"engine.exr has no layer '{layer}'; it has left, right" in result.err
+    # nor is a picture that says what it is taken for something else
+    result = airlight("compare", "r.exr", "r.exr", "--layer", "surface")
+    assert result.code == 0
+    write_exr(Path("ours.exr"), {"composite": np.ones((2, 3, 3), np.float32)}, {"scene": "sphere"})
+    result = airlight("compare", "ours.exr", "r.exr", "--layer", "surface")
+    assert result.code == 2
+    assert "ours.exr has no layer 'surface'; it has composite" in result.err
+
+
+def test_where_a_picture_is_not_finite_is_said(airlight) -> None:
+    broken = np.ones((4, 6, 3), np.float32)
+    broken[2, 5, 1], broken[3, 0] = np.inf, np.nan
+    OpenEXR.File({}, {"RGB": broken}).write("engine.exr")
+    write_exr(Path("r.exr"), {"composite": np.ones((4, 6, 3), np.float32)}, {})
+    result = airlight("compare", "engine.exr", "r.exr")
+    assert result.code == 2
+    assert "not finite in 2 of its pixels, the first in row 2, column 5; nothing can be measured" in result.err

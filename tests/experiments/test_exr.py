@@ -193,29 +193,6 @@ def test_a_file_that_is_cut_short_is_refused(tmp_path: Path, share: float) -> No
         read_exr(tmp_path / "cut.exr")
 
 
-def test_a_file_of_several_parts_is_refused(tmp_path: Path) -> None:
-    parts = [OpenEXR.Part({"type": OpenEXR.scanlineimage}, {"RGB": COLOUR}, name) for name in ("left", "right")]
-    OpenEXR.File(parts).write(str(tmp_path / "a.exr"))
-    with pytest.raises(InputError, match=r"a\.exr has 2 parts"):
-        read_exr(tmp_path / "a.exr")
-
-
-def test_a_data_window_is_refused(tmp_path: Path) -> None:
-    def window(left: int, top: int, right: int, bottom: int) -> tuple[np.ndarray, np.ndarray]:
-        return np.array([left, top], np.int32), np.array([right, bottom], np.int32)
-
-    def read(data: tuple[np.ndarray, np.ndarray], display: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        header = {"dataWindow": data, "displayWindow": display}
-        OpenEXR.File(header, {"RGB": COLOUR}).write(str(tmp_path / "a.exr"))
-        return read_exr(tmp_path / "a.exr")[0]["composite"]
-
-    whole = window(2, 3, 10, 7)
-    np.testing.assert_array_equal(read(whole, whole), COLOUR)
-    for display in (window(0, 0, 10, 7), window(2, 3, 11, 7), window(3, 3, 10, 7)):
-        with pytest.raises(InputError, match=r"a\.exr holds only a part of its picture, or more"):
-            read(whole, display)
-
-
 def test_names_that_are_not_text_are_refused(tmp_path: Path) -> None:
     folder = tmp_path / os.fsdecode(b"\xff")
     folder.mkdir()

@@ -97,8 +97,12 @@ def test_the_counting_build_draws_the_same_bits(technique: str, sigma_t: str, tm
     chosen = find_technique(technique, steps=STEPS, shadow_map=64)
     with Renderer(scene) as renderer:
         view = renderer.passes.see(chosen)
-        counts = renderer.passes.lattice_texture(chosen)
-        normal, counting = (read(renderer.passes.scatter(chosen, view, target)) for target in (None, counts))
+        target, counts = (renderer.passes.lattice_texture(chosen) for _ in range(2))
+        drawn = []
+        for counted_in in (None, counts):
+            renderer.passes.scatter_light(target, chosen, view, 0, counts=counted_in, first=True)
+            drawn.append(read(target))
+        normal, counting = drawn
         assert read(counts)[..., 0].max() > 1
     shared_device().release_spare_textures()
     assert normal[..., :3].max() > 0

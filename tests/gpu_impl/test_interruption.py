@@ -8,16 +8,17 @@ from gpu_impl import frame_passes, geometry
 from gpu_impl.passes import shadow_volume
 from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import find_technique
+from gpu_impl.visibilities import shadow_polygons
 from scenes.loader import load
 
-PLACES = ["render_gbuffer", "render_shadow_map", "render_shadow_polygons", "add_surface", "add_scattering", "combine"]
+PLACES = ["render_gbuffer", "render_shadow_map", "add_surface", "add_scattering", "combine"]
 
 
 def interrupt(*_: object, **__: object) -> None:
     raise KeyboardInterrupt
 
 
-@pytest.mark.parametrize("place", ["mesh 0", "mesh 3", "silhouettes", *PLACES])
+@pytest.mark.parametrize("place", ["mesh 0", "mesh 3", "polygons", "silhouettes", *PLACES])
 def test_an_interrupted_frame_leaves_no_trace(place: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = load("slit", size=(24, 16))
     technique = find_technique("Weng2010", steps=8, shadow_map=64, downsample=2)
@@ -36,6 +37,8 @@ def test_an_interrupted_frame_leaves_no_trace(place: str, monkeypatch: pytest.Mo
             patched.setattr(geometry.MeshBuffers, "draw", drawn)
         elif place == "silhouettes":
             patched.setattr(shadow_volume, "set_uniforms", interrupt)
+        elif place == "polygons":
+            patched.setattr(shadow_polygons, "render_shadow_polygons", interrupt)
         else:
             patched.setattr(frame_passes, place, interrupt)
         with pytest.raises(KeyboardInterrupt):

@@ -7,7 +7,7 @@ import pytest
 from oracles import SphereScene, piece_airlight
 from scene_files import write_scene
 
-import gpu_impl.blue_noise
+import gpu_impl.visibilities.blue_noise
 from gpu_impl.device import read, shared_device
 from gpu_impl.renderer import Renderer
 from gpu_impl.shader_source import ShaderSource, compile_program
@@ -19,8 +19,8 @@ SHIFTED = ("uniform_march:jittered", "uniform_march:blue_noise")
 
 def shifted_by(offset: float, scene, monkeypatch: pytest.MonkeyPatch, airlight: str, steps: int) -> np.ndarray:
     """Airlight of a march all of whose rays have the same offset."""
-    tile = np.full((gpu_impl.blue_noise.SIZE,) * 2, offset, np.float32)
-    monkeypatch.setattr(gpu_impl.blue_noise, "blue_noise", lambda: tile)
+    tile = np.full((gpu_impl.visibilities.blue_noise.SIZE,) * 2, offset, np.float32)
+    monkeypatch.setattr(gpu_impl.visibilities.blue_noise, "blue_noise", lambda: tile)
     with Renderer(scene) as renderer:
         frame = renderer.render(find_technique(f"uniform_march:blue_noise+{airlight}", steps=steps))
     return frame.scattering.astype(float)

@@ -11,26 +11,37 @@ from gpu_impl import shader_source
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.context import shared_context
 from gpu_impl.device import Device
+from gpu_impl.lattices import LATTICES
 from gpu_impl.passes.shadow_volume import VERTEX_BLOCKS
 from gpu_impl.shader_source import SHADERS, ShaderError, ShaderSource, compile_compute, compile_program
 from gpu_impl.visibilities import VISIBILITIES
 
 FILES = sorted(path.relative_to(SHADERS).as_posix() for path in SHADERS.rglob("*.glsl"))
 INCLUDES = [name for name in FILES if not name.endswith((".vert.glsl", ".frag.glsl", ".comp.glsl"))]
+MAINS = [name for name in FILES if name not in INCLUDES]
 FULLSCREEN = ShaderSource("fullscreen.vert.glsl")
-# vertex and fragment shader of each pass; the scattering pass has the combinations below to itself
-PASSES = [
-    ("geometry.vert.glsl", "geometry.frag.glsl"),
-    ("shadow_map.vert.glsl", "shadow_map.frag.glsl"),
-    ("fullscreen.vert.glsl", "surface.frag.glsl"),
-    ("fullscreen.vert.glsl", "combination.frag.glsl"),
-    ("upsampling/edges.vert.glsl", "combination.frag.glsl"),
-    ("fullscreen.vert.glsl", "upsampling/cells.frag.glsl"),
-    ("fullscreen.vert.glsl", "tone_mapping.frag.glsl"),
-    ("fullscreen.vert.glsl", "shadow_volume/limits.frag.glsl"),
-    ("shadow_volume/polygon.vert.glsl", "shadow_volume/polygon.frag.glsl"),
-]
-COMPUTE = "shadow_volume/silhouette.comp.glsl"
+# vertex shaders of the scattering pass, which has its combinations to itself
+DRAWN = {strategy.vertex for strategy in VISIBILITIES.values()} - {"fullscreen.vert.glsl"}
+FRAGMENTS = [name for name in MAINS if name.endswith(".frag.glsl") and name != "scattering.frag.glsl"]
+COMPUTES = [name for name in MAINS if name.endswith(".comp.glsl")]
+
+
+def vertex_of(fragment: str) -> str:
+    """A pass's vertex shader has its fragment shader's name, or is that of a full screen."""
+    own = fragment.replace(".frag.", ".vert.")
+    return own if own in FILES else "fullscreen.vert.glsl"
+
+
+# vertex and fragment shader of each pass
+PASSES = [*((vertex_of(name), name) for name in FRAGMENTS), ("upsampling/edges.vert.glsl", "combination.frag.glsl")]
+# what stands for the parts of a technique where any will do
+PARTS = {
+    "<airlight>": "airlight/riemann.glsl",
+    "<lattice>": "lattice/grid.glsl",
+    "<phase>": "phase/isotropic.glsl",
+    "<upsampling>": "upsampling/bilateral.glsl",
+}
+RECONSTRUCTIONS = sorted({kind.reconstruction for kind in LATTICES.values() if kind.reconstruction})
 RAY_AND_LIGHT = "Ray(vec3(0), vec3(0, 0, 1), 1.0), Light(vec3(1), vec3(0, 0, 1), vec3(1), 3.14, 3.14)"
 LIT = "void lit(float t0, float dt, float w) { result += vec4(t0, dt, w, 1.0); }\n"
 # what the contract leaves to the other parts, and a call, so that the linker keeps what is tested
@@ -40,6 +51,8 @@ STUBS = {
     "visibility/parts": f"{LIT}void main() {{ result = vec4(0.0); }}",
     "phase": "void main() { result = vec4(phase(vec2(0.25, 0.75)), phase_scale(), 0.0, 0.0); }",
     "upsampling": "void main() { result = upsampled(ivec2(0)); }",
+    "lattice": "void main() { result = vec4(position_of(ivec2(0)), 0.0, 0.0); }",
+    "reconstruction": "void main() { result = upsampled(ivec2(0)); }",
     "": "void main() { result = vec4(1.0); }",
 }
 
@@ -62,6 +75,9 @@ PLAIN = {
     "SPECULAR": 0,
     "PICTURE": 0,
     "CULL": 0,
+    "SHADOW_GIVEN": 0,
+    "AIRLIGHT_AT_CORNERS": 0,
+    **{name: value for strategy in VISIBILITIES.values() for name, value in strategy.defines.items()},
 }
 VARIANTS = [
     PLAIN,
@@ -70,6 +86,8 @@ VARIANTS = [
     PLAIN | {"TILES": 1, "SPOT": 1, "FOG_BALL": 1, "WHOLE_LEG": 0, "SPECULAR": 1},
     PLAIN | {"TILES": 1, "DIRECTIONAL": 1, "GREY": 1, "FOG_PLANES": 64, "WHOLE_LEG": 0},
 ]
+# what is asked about the ray of one's own cell can be told by rays
+OF_RAYS = [*VARIANTS, PLAIN | {"SHADOW_GIVEN": 1}]
 
 
 EXAMPLES = [
@@ -86,12 +104,11 @@ def assembled(main: str, **settings) -> ShaderSource:
     # what any of the models has computed for it: some share a name, none needs more than there is for it
     computed = {name: text for model in AIRLIGHT_MODELS.values() for name, text in model.generated(EXAMPLES[0]).items()}
     generated = {"<main>": main, **computed, **settings.pop("generated", {})}
-    includes = {"<phase>": "phase/isotropic.glsl"}
-    return ShaderSource("<main>", settings.pop("defines", PLAIN), includes, generated)
+    return ShaderSource("<main>", settings.pop("defines", PLAIN), PARTS, generated)
 
 
-def compiled(source: ShaderSource) -> None:
-    compile_program(shared_context(), FULLSCREEN, source).release()
+def compiled(source: ShaderSource, vertex: ShaderSource = FULLSCREEN) -> None:
+    compile_program(shared_context(), vertex, source).release()
 
 
 @pytest.mark.parametrize("name", INCLUDES)
@@ -100,25 +117,35 @@ def test_an_include_compiles_on_its_own(name: str) -> None:
     # parts of a model are not models
     if folder.startswith("airlight") and name not in {model.source for model in AIRLIGHT_MODELS.values()}:
         folder = ""
-    if folder not in STUBS:
+    if name in RECONSTRUCTIONS:
+        folder = "reconstruction"
+    if folder not in STUBS or (folder == "lattice" and name not in {kind.source for kind in LATTICES.values()}):
         folder = ""
     # a part of the quadrature asks for what comes before it there
     before = '#include "<phase>"\n#include "<gauss-legendre>"\n' if name == "airlight/part_of_the_leg.glsl" else ""
-    for defines in VARIANTS:
+    for variant in OF_RAYS:
+        defines = variant
         main = f'out vec4 result;\n{before}#include "{name}"\n{STUBS[folder]}\n'
-        compiled(assembled(main, defines=defines))
+        # a drawn strategy is handed what its own vertex shader finds
+        strategy = next((one for one in VISIBILITIES.values() if one.source == name), None)
+        vertex = strategy.vertex if strategy else FULLSCREEN.files[0]
+        if strategy and strategy.given:
+            defines = variant | {"SHADOW_GIVEN": 1}
+        compiled(assembled(main, defines=defines), ShaderSource(vertex, defines, PARTS))
 
 
 @pytest.mark.parametrize(("vertex", "fragment"), PASSES)
 @pytest.mark.parametrize("defines", VARIANTS, ids=str)
 def test_a_pass_compiles(vertex: str, fragment: str, defines: dict[str, int]) -> None:
-    source = ShaderSource(fragment, defines, {"<upsampling>": "upsampling/bilateral.glsl"})
-    compile_program(shared_context(), ShaderSource(vertex, defines), source).release()
+    for reconstruction in RECONSTRUCTIONS if fragment == "reconstruction.frag.glsl" else ["none"]:
+        source = ShaderSource(fragment, defines, PARTS | {"<reconstruction>": reconstruction})
+        compile_program(shared_context(), ShaderSource(vertex, defines, PARTS), source).release()
 
 
+@pytest.mark.parametrize("name", COMPUTES)
 @pytest.mark.parametrize("defines", VARIANTS, ids=str)
-def test_a_compute_pass_compiles(defines: dict[str, int]) -> None:
-    compile_compute(shared_context(), ShaderSource(COMPUTE, defines)).release()
+def test_a_compute_pass_compiles(name: str, defines: dict[str, int]) -> None:
+    compile_compute(shared_context(), ShaderSource(name, defines, PARTS)).release()
 
 
 def test_a_mistake_in_a_compute_shader_is_reported_with_its_place() -> None:
@@ -134,9 +161,9 @@ def test_the_polygons_declare_no_more_storage_blocks_than_they_say() -> None:
 
 
 def test_every_file_is_covered() -> None:
-    mains = {name for pair in PASSES for name in pair} | {"scattering.frag.glsl", COMPUTE}
-    assert mains | set(INCLUDES) == set(FILES)
+    assert {name for pair in PASSES for name in pair} | DRAWN | {"scattering.frag.glsl", *COMPUTES} == set(MAINS)
     registered = {model.source for model in AIRLIGHT_MODELS.values()} | {v.source for v in VISIBILITIES.values()}
+    registered |= {kind.source for kind in LATTICES.values()} | set(RECONSTRUCTIONS)
     assert registered <= set(INCLUDES)
     assert {f"phase/{name}.glsl" for name in PHASES} <= set(INCLUDES)
     assert {function.name for function in EXAMPLES} == set(PHASES)
@@ -151,30 +178,35 @@ TAKEN = [
 
 
 def compiled_cell(visibility: str, airlight: str, function: Phase, variants: list[dict[str, int]]) -> None:
-    model, device = AIRLIGHT_MODELS[airlight], Device(shared_context())
-    # the contract leaves a strategy free to do without the map
-    looks_up = "shadow_lookup.glsl" in assembled(f'#include "{VISIBILITIES[visibility].source}"').files
-    for defines in variants:
+    model, strategy, device = AIRLIGHT_MODELS[airlight], VISIBILITIES[visibility], Device(shared_context())
+    for variant in variants:
+        if variant["SHADOW_GIVEN"] == 1 and not (strategy.asks_points or strategy.given):
+            continue
+        defines = variant | ({"SHADOW_GIVEN": 1} if strategy.given else {})
         program = device.program(
             "scattering.frag.glsl",
-            defines=defines,
-            includes={
+            strategy.vertex,
+            defines=defines | strategy.defines | {"AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners)},
+            includes=PARTS
+            | {
                 "<airlight>": model.source,
-                "<visibility>": VISIBILITIES[visibility].source,
+                "<visibility>": strategy.source,
                 "<phase>": f"phase/{function.name}.glsl",
             },
             generated=model.generated(function),
         )
         # the driver asked the strategy, and the strategy the model
         assert "sigma_s" in program
-        assert ("shadow_map" in program) == (looks_up and "SHADOW_BUFFER" not in defines)
+        # one that says that the map's resolution is no part of its error does not read it, nor does a control
+        if not strategy.reads_shadow_map or defines["SHADOW_GIVEN"] == 1:
+            assert not {"shadow_map", "ShadowTexels"} & set(program)
     device.release()
 
 
 @pytest.mark.parametrize(("airlight", "function"), TAKEN)
 def test_every_model_compiles_with_its_phase_functions(airlight: str, function: Phase) -> None:
     # a model for lights in the fog meets no other
-    variants = VARIANTS if AIRLIGHT_MODELS[airlight].any_light else [v for v in VARIANTS if v["WHOLE_LEG"] == 1]
+    variants = OF_RAYS if AIRLIGHT_MODELS[airlight].any_light else [v for v in OF_RAYS if v["WHOLE_LEG"] == 1]
     compiled_cell("lit_intervals", airlight, function, variants)
 
 
@@ -182,7 +214,7 @@ def test_every_model_compiles_with_its_phase_functions(airlight: str, function: 
 @pytest.mark.parametrize("airlight", AIRLIGHT_MODELS)
 def test_every_visibility_compiles_with_every_model(visibility: str, airlight: str) -> None:
     # neither knows the other, so that names are all they can quarrel about: one model sees all variants, the others one
-    compiled_cell(visibility, airlight, EXAMPLES[0], VARIANTS if airlight == "riemann" else VARIANTS[1:2])
+    compiled_cell(visibility, airlight, EXAMPLES[0], OF_RAYS if airlight == "riemann" else VARIANTS[1:2])
 
 
 @pytest.mark.parametrize("include", INCLUDES)

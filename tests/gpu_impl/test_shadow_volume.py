@@ -12,12 +12,11 @@ from scene_files import point, spot, write_scene
 
 from gpu_impl.camera_uniforms import camera_uniforms
 from gpu_impl.device import read, shared_device
-from gpu_impl.lattice import Lattice
 from gpu_impl.light_uniforms import light_defines, light_uniforms
-from gpu_impl.passes.shadow_volume import bind_polygons
 from gpu_impl.renderer import Renderer
 from gpu_impl.shader_source import SHADERS, set_uniforms
 from gpu_impl.techniques import find_technique
+from gpu_impl.visibilities.shadow_polygons import repaired
 from scenes.errors import InputError
 from scenes.loader import load
 from scenes.model import Scene
@@ -30,7 +29,7 @@ uniform Light light;
 out vec4 result;
 void main() {
     float start;
-    Ray ray = ray_in_fog(pixel_of(ivec2(gl_FragCoord.xy)), light, start);
+    Ray ray = ray_in_fog(ivec2(gl_FragCoord.xy), light, start);
     vec2 range = ray.t_max > 0.0 ? cone_interval(ray, light) : vec2(0.0);
     result = vec4(range, range.x < range.y ? shadow_region(ray, light, range, true) : range.yy) + start;
 }
@@ -44,25 +43,26 @@ def regions(scene: Scene, downsample: int = 1, shadow_map: int = 512) -> list[np
     found = []
     with Renderer(scene) as renderer:
         device, view = renderer.device, renderer.passes.see(technique)
-        polygons = renderer.passes.shadow_polygons(technique, view)
-        for layer, (light, shadow_map_) in enumerate(zip(renderer.passes.lights, view.shadow_maps, strict=True)):
+        for number, light in enumerate(renderer.passes.lights):
+            inputs = renderer.passes.inputs(technique, view, number)
+            polygons = repaired(inputs)
             program = device.program(
                 "<region>",
-                defines=light_defines(scene, light) | shadow_map_.defines | {"GREY": 1, "STEPS": 1},
+                defines=light_defines(scene, light)
+                | inputs.shadow_map.defines
+                | {"GREY": 1, "STEPS": 1, "SHADOW_GIVEN": 0},
+                includes={"<lattice>": inputs.lattice.kind.source},
                 generated={"<region>": REGION},
             )
             uniforms = camera_uniforms(scene.camera) | light_uniforms(scene, light, renderer.passes.pictures)
-            uniforms |= (
-                shadow_map_.bind(unit=0)
-                | view.gbuffer.bind(first_unit=1)
-                | Lattice.of(scene.camera, downsample).uniforms
-            )
-            set_uniforms(program, uniforms | bind_polygons(polygons, layer))
+            uniforms |= inputs.shadow_map.bind(unit=0) | view.gbuffer.bind(first_unit=1) | inputs.lattice.uniforms
+            set_uniforms(program, uniforms)
+            polygons.bind(program)
             target = renderer.passes.lattice_texture(technique)
             device.fill(program, target)
             found.append(read(target).astype(np.float64))
             target.release()
-        device.give_back(polygons)
+            polygons.give_back(device)
         view.give_back(device)
     return found
 

@@ -7,8 +7,8 @@ import hashlib
 import numpy as np
 import pytest
 
-from gpu_impl.blue_noise import SEED, SIZE, blue_noise
-from gpu_impl.void_and_cluster import void_and_cluster
+from gpu_impl.visibilities.blue_noise import SEED, SIZE, blue_noise
+from gpu_impl.visibilities.void_and_cluster import void_and_cluster
 
 
 def power(tile: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

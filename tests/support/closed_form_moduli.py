@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from analytic import MODELS
+from analytic.models import sun2005
 from analytic.models.weng2010.antiderivatives import i_pair, real_ei
 from analytic.models.weng2010.polynomials import near_minimax, taylor
 from analytic.phase import Phase
@@ -39,6 +40,8 @@ def moduli(name: str, phase: Phase, segments: Segments) -> np.ndarray:
     with np.errstate(all="ignore"):
         if name in ("weng2010", "one_ei"):
             return _of_two_terms(name, phase, segments)
+        if name.startswith("sun2005"):
+            return _of_two_reads(segments)
         if name.endswith("-ei") or phase.name == "isotropic":
             coefficients = EVEN, EVEN
         else:
@@ -53,6 +56,12 @@ def _of_two_terms(name: str, phase: Phase, s: Segments) -> np.ndarray:
     # Schlick's two terms are larger than their sum (the model's `domain`)
     k = abs(getattr(phase, "k", 0.0))
     return (2 * near - value) * (1 + (1 + k) / (2 - 2 * k) if k else 1)
+
+
+def _of_two_reads(s: Segments) -> np.ndarray:
+    # of the function that is tabulated: what a table makes of it is as large
+    ends = sum(sun2005.f(s.optical_h, np.arctan2(s.h, -x) / 2) for x in (s.x_a, s.x_b))
+    return np.exp(s.sigma_t * s.x_a) * ends / (2 * np.pi * s.h)
 
 
 def _repaired(s: Segments, front: Sequence[float], back: Sequence[float]) -> np.ndarray:

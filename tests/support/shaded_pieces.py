@@ -9,8 +9,11 @@ of the two are compared.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from closed_form_moduli import rounding_unit
@@ -22,7 +25,7 @@ from experiments.atlas.grid import BESIDE, INSIDE, RANGE, VISIBLE_DEPTH
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.context import shared_context
 from gpu_impl.device import Device
-from gpu_impl.passes.scattering import phase_uniforms
+from gpu_impl.passes.scattering import TABLE_UNIT, phase_uniforms
 from gpu_impl.shader_source import set_uniforms
 
 CELLS, WIDTH, SEED = 16, 1024, 7
@@ -93,13 +96,28 @@ def shade(name: str, function: Phase, changed: dict[str, str] | None = None, **d
         source.write(np.resize(texels[mine], (size[0] * size[1], 4)).tobytes())
         source.use(0)
         set_uniforms(program, {"pieces": 0, "sigma_t": (float(sigma_t),) * 3, "sigma_s": (1.0,) * 3})
-        with phase_uniforms(device, program, function):
+        with phase_uniforms(device, program, function), table_uniforms(device, program, name, function):
             device.fill(program, target, counts)
         value[mine] = np.frombuffer(target.read(), np.float32).reshape(-1, 4)[: mine.size, ::3]
         for texture in (source, target, counts):
             texture.release()
     device.release()
     return value
+
+
+@contextmanager
+def table_uniforms(device: Device, program: Any, name: str, function: Phase) -> Iterator[None]:
+    """Bind the model's table, where it has one."""
+    make = AIRLIGHT_MODELS[name].table
+    if make is None:
+        yield
+        return
+    values = make(function)
+    texture = device.context.texture(values.shape[::-1], 1, values.tobytes(), dtype="f4")
+    texture.use(TABLE_UNIT)
+    set_uniforms(program, {"airlight_table": TABLE_UNIT})
+    yield
+    texture.release()
 
 
 @cache

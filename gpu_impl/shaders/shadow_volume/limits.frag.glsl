@@ -11,8 +11,8 @@ out vec4 limits;   // first and last distance; distance = depth * z - w
 void main() {
     ivec2 pixel = pixel_of(ivec2(gl_FragCoord.xy));
     float start;
-    Ray ray = ray_in_fog(pixel, light, start);
-    float stretch = axis_stretch(pixel);
+    Ray ray = ray_in_fog(ivec2(gl_FragCoord.xy), light, start);
+    float stretch = axis_stretch(vec2(pixel) + 0.5);
     vec2 counts = vec2(0.0, 3e38);
 #if CULL == 1
     counts = ray.t_max > 0.0 ? cone_interval(ray, light) : vec2(0.0);

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from scenes.model import Camera
+from gpu_impl.lattices.lattice import LatticeKind
+from scenes.model import Camera, Light, Scene
 
 
 @dataclass(frozen=True)
-class Lattice:
-    """Which pixels are evaluated: `first`, and every `step`-th from there; read by lattice.glsl.
+class Grid:
+    """Which pixels are evaluated: `first`, and every `step`-th from there; read by shaders/lattice.glsl.
 
     Attributes
     ----------
@@ -25,7 +26,7 @@ class Lattice:
     first: tuple[int, int]
 
     @classmethod
-    def of(cls, camera: Camera, step: int) -> Lattice:
+    def of(cls, camera: Camera, step: int) -> Grid:
         """Every `step`-th pixel of a camera's image."""
         pixels = camera.width, camera.height
         width, height = (-(-count // step) for count in pixels)
@@ -34,5 +35,12 @@ class Lattice:
 
     @property
     def uniforms(self) -> dict[str, Any]:
-        """Uniforms of lattice.glsl."""
+        """Uniforms of shaders/lattice.glsl."""
         return {"downsample": self.step, "first_pixel": self.first}
+
+
+def _uniforms(scene: Scene, light: Light, size: tuple[int, int], step: int) -> dict[str, Any]:
+    return Grid.of(scene.camera, step).uniforms
+
+
+GRID = LatticeKind("lattice/grid.glsl", "every N-th pixel of the image", uniforms=_uniforms)

@@ -1,0 +1,1 @@
+"""Where a technique's error comes from: split over its parts as Shapley values, by replacing parts with exact ones."""

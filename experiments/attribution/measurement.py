@@ -1,0 +1,83 @@
+"""One technique on one scene: every coalition drawn, and its error split."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from experiments.attribution.coalitions import Parts, parts_of
+from experiments.attribution.pictures import Pictures
+from experiments.attribution.shapley import Coalition, coalitions
+from experiments.attribution.split import Split, split
+from experiments.metrics import Image
+from experiments.technique_label import technique_label
+from gpu_impl.techniques import Technique
+from reference.estimate import Reference
+from scenes.errors import InputError
+
+# told what is about to be replaced, and in how many pictures
+Tell = Callable[[Coalition, int], None]
+
+
+@dataclass(frozen=True)
+class Attribution:
+    """Where the error of a technique's airlight comes from.
+
+    Attributes
+    ----------
+    technique : Technique
+    parts : Parts
+    split : Split
+    picture : (H, W, 3)                      what the technique draws
+    reference, standard_error : (H, W, 3)    what it is held against
+    """
+
+    technique: Technique
+    parts: Parts
+    split: Split
+    picture: Image
+    reference: Image
+    standard_error: Image
+
+    @property
+    def label(self) -> str:
+        """Name and changed settings of the technique, for people."""
+        return technique_label(self.technique.name, vars(self.technique))
+
+    @cached_property
+    def rms_of_mean(self) -> float:
+        """Root of the whole mean squared error over the mean of the reference, a fraction; 0 where all is noise."""
+        return float(np.sqrt(max(self.split.whole.value, 0.0)) / np.mean(self.reference))
+
+
+def attribute(pictures: Pictures, technique: Technique, reference: Reference, tell: Tell) -> Attribution:
+    """Draw all coalitions of the technique's parts and split its error.
+
+    Parameters
+    ----------
+    pictures : Pictures      of the scene
+    reference : Reference    of the same scene
+
+    Raises
+    ------
+    InputError
+        The technique cannot draw the scene, or it cannot with some of its parts replaced.
+    """
+    parts = parts_of(technique, pictures.scene)
+    chosen = coalitions(parts.there)
+    drawn = {}
+    for coalition in chosen:
+        tell(coalition, len(chosen))
+        try:
+            drawn[coalition] = pictures.draw(technique, coalition)
+        except InputError as error:
+            if not coalition:
+                raise
+            exact = " and ".join(part for part in parts.there if part in coalition)
+            raise InputError(f"The error of {technique.name} cannot be split, for with exact {exact}: {error}") from None
+    noise = reference.standard_error("scattering")
+    found = split(parts.there, drawn, reference.scattering, noise)
+    return Attribution(technique, parts, found, drawn[Coalition()], reference.scattering, noise)

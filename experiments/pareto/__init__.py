@@ -1,0 +1,1 @@
+"""Error against cost: which techniques nothing else beats in both, and what keeps the others from it."""
