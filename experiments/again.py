@@ -16,6 +16,7 @@ from experiments.pictures import Picture, read_picture
 from experiments.provenance import TECHNIQUE_KEYS, environment, file_hashes
 from experiments.renderers import open_renderer
 from gpu_impl.frame import Frame
+from gpu_impl.own_technique import OwnTechnique, make_known
 from gpu_impl.techniques import Technique
 from scenes.catalogue import FOLDER
 from scenes.errors import InputError
@@ -142,13 +143,19 @@ def _unusable(picture: Picture, key: str) -> InputError:
 
 
 def _technique(picture: Picture) -> Technique:
-    """The technique of a file, each of its fields."""
-    texts = {field.name: _text(picture, TECHNIQUE_KEYS.get(field.name, field.name)) for field in fields(Technique)}
+    """The technique of a file, each of its fields; one of somebody's own from the texts that it was drawn with."""
+    kind = OwnTechnique if TECHNIQUE_KEYS["texts"] in picture.metadata else Technique
+    texts = {field.name: _text(picture, TECHNIQUE_KEYS.get(field.name, field.name)) for field in fields(kind)}
     try:
-        technique = TypeAdapter(Technique).validate_python(texts)
+        technique = TypeAdapter(kind).validate_python(texts)
     except ValidationError as error:
         wrong = str(error.errors()[0]["loc"][0])
         raise _unusable(picture, TECHNIQUE_KEYS.get(wrong, wrong)) from None
+    if isinstance(technique, OwnTechnique):
+        try:
+            make_known(technique.file, technique.texts)
+        except (ValueError, RecursionError, InputError):
+            raise _unusable(picture, TECHNIQUE_KEYS["texts"]) from None
     technique.check()
     return technique
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -97,7 +98,7 @@ def attribute(
         run_attribution(loaded, chosen, truth, out, _command(scene, options))
 
 
-def _command(scene: str, options: dict[str, object]) -> str:
+def _command(scene: str, options: Mapping[str, object]) -> str:
     """The command that makes the page again; an option that is None was not given."""
     words = ["airlight", "attribute", scene]
     for name, value in options.items():

@@ -11,6 +11,7 @@ import typer
 
 from experiments.accuracy_cli import accuracy
 from experiments.agree_cli import agree
+from experiments.attribute_cli import attribute
 from experiments.benchmark_cli import benchmark_app
 from experiments.cache_cli import cache_app
 from experiments.compare_cli import compare
@@ -168,5 +169,19 @@ def reference(
     say(f"{out}: {loaded.name}, {told(result)}")
 
 
-for command in (compare, run, page, gate, accuracy, agree, audit, atlas, quadrature, spectra, figures, pareto):
+for command in (
+    compare,
+    attribute,
+    run,
+    page,
+    gate,
+    accuracy,
+    agree,
+    audit,
+    atlas,
+    quadrature,
+    spectra,
+    figures,
+    pareto,
+):
     app.command()(command)

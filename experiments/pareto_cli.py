@@ -35,7 +35,8 @@ def pareto(
     """
     from experiments.console import say
     from experiments.pages import prepare_page
-    from experiments.pareto.words import verdict
+    from experiments.pareto.ours import verdict
+    from experiments.pareto.points import scenes_of
     from experiments.run.folder import read_table
     from experiments.run.page import write_page
     from experiments.run_cli import run
@@ -46,5 +47,5 @@ def pareto(
     scenes = [f"scenes={json.dumps(scene, ensure_ascii=False)}"] if scene else []
     folder = run(SUITE, out=runs, change=[*(change or []), *scenes], fresh=fresh)
     page = write_page(folder, out)
-    say(verdict(list(read_table(folder).iter_rows(named=True))))
+    say(verdict(scenes_of(list(read_table(folder).iter_rows(named=True)))))
     say(f"Page: {page.resolve()}")

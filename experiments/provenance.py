@@ -18,8 +18,13 @@ if TYPE_CHECKING:
     from reference.estimate import Reference
     from scenes.model import Scene
 
-# keys of the technique's fields, where "airlight" is the program's version
-TECHNIQUE_KEYS = {"name": "technique", "airlight": "airlight_model"}
+# keys of the technique's fields, where "airlight" is the program's version; the last two are of somebody's own alone
+TECHNIQUE_KEYS = {
+    "name": "technique",
+    "airlight": "airlight_model",
+    "file": "technique_file",
+    "texts": "technique_texts",
+}
 
 
 @cache

@@ -29,7 +29,7 @@ def render(
     scene: Annotated[str | None, typer.Argument(metavar="SCENE", help=SCENE_HELP)] = None,
     out: Annotated[Path | None, typer.Option(help="The EXR file to write; F-again.exr beside --again F.exr.")] = None,
     technique: Annotated[
-        str, typer.Option(help="A technique, or a cell such as lit_intervals+quadrature.")
+        str, typer.Option(help="A technique, a cell such as lit_intervals+quadrature, or a TOML file of your own.")
     ] = "Weng2010",
     parameter: Parameters = None,
     size: Size = None,

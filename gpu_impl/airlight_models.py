@@ -92,6 +92,9 @@ def _sun2005(side: int) -> AirlightShader:
 # names are those of analytic.MODELS where it has the model, all but `quadrature`, which is its `quadrature_float32`
 AIRLIGHT_MODELS = {
     "riemann": AirlightShader("airlight/riemann.glsl", "one point sample a piece (Nishita 1987)"),
+    "riemann:steps": AirlightShader(
+        "airlight/riemann_steps.glsl", "point samples as dense as a march of so many steps over the ray has them"
+    ),
     "weng2010": _closed_form("weng2010", "closed form, repaired, its exponents merged: two complex Ei", ISOTROPIC),
     "weng2010:printed": _closed_form(
         "weng2010_printed", "sections 4.3 and 4.4 as printed", POLYNOMIAL_PHASES, _printed

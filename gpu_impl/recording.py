@@ -28,6 +28,7 @@ class Pieces:
     t0, dt : (n,)             begin, counted from `start`, and length [scene unit], inside the light's cone where the
                               model asks for that
     w : (n,)                  weight, of any sign
+    t_max : (h, w)            how long each cell's ray in fog is [scene unit]; not positive where there is no fog
     """
 
     positions: NDArray[np.float32]
@@ -36,6 +37,7 @@ class Pieces:
     t0: NDArray[np.float32]
     dt: NDArray[np.float32]
     w: NDArray[np.float32]
+    t_max: NDArray[np.float32]
 
 
 class Recording:
@@ -70,7 +72,7 @@ class Recording:
         cell = words[:, 0].astype(np.int64)
         t0, dt, w = (np.ascontiguousarray(words[:, i]).view(np.float32) for i in (1, 2, 3))
         order = np.lexsort([t0, cell])
-        return Pieces(rays[..., :2], rays[..., 2], cell[order], t0[order], dt[order], w[order])
+        return Pieces(rays[..., :2], rays[..., 2], cell[order], t0[order], dt[order], w[order], rays[..., 3])
 
     def release(self) -> None:
         """Give the buffers back."""

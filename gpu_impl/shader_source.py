@@ -4,16 +4,45 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from scenes.errors import InputError
+from scenes.messages import readable
+
 SHADERS = Path(__file__).parent / "shaders"
 HEADER = "#version 430 core\n"
-_INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
+INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
+# in a file
+MOST_LINES = 100_000
 # Mesa: "2:14(5): error", NVIDIA: "2(14) : error", others: "2:14: error"
 _PLACE = re.compile(r"^(?:ERROR:\s*)?(\d+)[:(](\d+)", re.MULTILINE)
+
+
+def _told(number: int, line: int) -> str:
+    """File and line as `#line` has them: the line says both, as Mesa reports a call of no function in file 0."""
+    return f"{number * MOST_LINES + line} {number}"
+
+
+@dataclass(frozen=True)
+class OwnFile:
+    """A shader file that is no part of airlight, as it was when it was read.
+
+    Attributes
+    ----------
+    path : str    where, for messages
+    text : str
+    """
+
+    path: str
+    text: str
+
+
+# by the names that includes and registries have for them; own_files.py puts them there
+OWN_FILES: dict[str, OwnFile] = {}
 
 
 class ShaderError(RuntimeError):
@@ -51,21 +80,41 @@ class ShaderSource:
         # GLSL knows files by number only; #line gives each its own
         number = len(self.files)
         self.files.append(name)
-        text = self._generated.get(name) or (SHADERS / name).read_text()
-        lines = [f"#line 1 {number}\n"]
+        own = OWN_FILES.get(name)
+        text = own.text if own else self._generated.get(name) or (SHADERS / name).read_text()
+        lines = [f"#line {_told(number, 1)}\n"]
         for line_number, line in enumerate(text.splitlines(keepends=True), start=1):
-            include = _INCLUDE.match(line)
-            lines.append(self._expand(include[1]) + f"#line {line_number + 1} {number}\n" if include else line)
+            include = INCLUDE.match(line)
+            lines.append(self._expand(include[1]) + f"#line {_told(number, line_number + 1)}\n" if include else line)
         return "".join(lines) + "\n"
+
+    @property
+    def own_files(self) -> list[str]:
+        """Paths of those of its files that are no part of airlight."""
+        return [OWN_FILES[name].path for name in self.files if name in OWN_FILES]
 
     def name_files(self, message: str) -> str:
         """Replace the file numbers of a compiler's message by names."""
+        shown = [OWN_FILES[name].path if name in OWN_FILES else name for name in self.files]
 
         def named(place: re.Match[str]) -> str:
-            number = int(place[1])
-            return f"{self.files[number] if number < len(self.files) else number}:{place[2]}"
+            number, line = divmod(int(place[2]), MOST_LINES)
+            return f"{shown[number] if number < len(shown) else number}:{line}"
 
         return _PLACE.sub(named, message)
+
+    def failure(self, error: Exception) -> Exception:
+        """What to raise where it does not compile: one sentence where a file of somebody's own is in it."""
+        message = self.name_files(str(error))
+        if not self.own_files:
+            return ShaderError(message)
+        lines = [line.strip() for line in message.splitlines() if "error" in line.lower()]
+        for line in lines:
+            if line.startswith(tuple(self.own_files)):
+                return InputError(f"{readable(line)}.")
+        # a function that is missing is missing nowhere
+        said = f": {readable(lines[0])}" if lines else ""
+        return InputError(f"The shader with {' and '.join(self.own_files)} does not compile{said}.")
 
 
 def compile_program(context: Any, vertex: ShaderSource, fragment: ShaderSource) -> Any:
@@ -75,13 +124,15 @@ def compile_program(context: Any, vertex: ShaderSource, fragment: ShaderSource) 
     ------
     ShaderError
         With the name and line of each file that the compiler complained about.
+    InputError
+        The same, where a file is in it that is no part of airlight.
     """
     try:
         return context.program(vertex_shader=vertex.text, fragment_shader=fragment.text)
     except Exception as error:
         # moderngl raises its bare Error; which of the two shaders failed stands in its heading
         source = vertex if "vertex_shader" in str(error) and "fragment_shader" not in str(error) else fragment
-        raise ShaderError(source.name_files(str(error))) from None
+        raise source.failure(error) from None
 
 
 def compile_compute(context: Any, source: ShaderSource) -> Any:

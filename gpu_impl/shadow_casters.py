@@ -47,8 +47,8 @@ def parts_of(vertices: int, faces: Array, mesh: Array) -> Array:
     """
     faces = faces.astype(np.int64)
     # a vertex of two meshes is two
-    start, corner = (part.ravel() for part in np.unique(faces + vertices * mesh[:, None], return_inverse=True))
-    count, corner = len(start), corner.reshape(-1, 3)
+    used, number_of = np.unique(faces + vertices * mesh[:, None], return_inverse=True)
+    count, corner = len(used), number_of.reshape(-1, 3)
     start, end = corner.ravel(), np.roll(corner, -1, axis=1).ravel()
     graph = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(count, count))
     number, part_of = connected_components(graph, directed=False)

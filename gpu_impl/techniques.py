@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import MISSING, dataclass, fields, replace
 from numbers import Integral
+from pathlib import Path
 from typing import Any
 
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
@@ -166,7 +167,8 @@ def find_technique(name: str, **settings: Any) -> Technique:
 
     Parameters
     ----------
-    name : a published technique, or any other cell as `visibility+airlight`, such as `lit_intervals+quadrature`
+    name : a published technique, any other cell as `visibility+airlight`, such as `lit_intervals+quadrature`, or the
+        path of a TOML file that describes one (own_technique.py)
     settings : fields of `Technique`; with another visibility or airlight model it is another cell, and is called so
 
     Raises
@@ -176,13 +178,18 @@ def find_technique(name: str, **settings: Any) -> Technique:
     """
     if name in TECHNIQUES:
         technique = TECHNIQUES[name]
+    elif name.endswith(".toml"):
+        # which asks this registry whether its parts are known
+        from gpu_impl.own_technique import load_technique
+
+        technique = load_technique(Path(name))
     elif "+" in name:
         visibility, model = name.split("+", 1)
         technique = Technique(name, visibility, model, steps=CELL_STEPS)
     else:
         raise InputError(
-            f"There is no technique '{name}'; use one of {', '.join(TECHNIQUES)}, or a cell of the product "
-            "such as lit_intervals+quadrature."
+            f"There is no technique '{name}'; use one of {', '.join(TECHNIQUES)}, a cell of the product such as "
+            "lit_intervals+quadrature, or the path of a TOML file."
         )
     changed = replace(technique, **{key: value for key, value in settings.items() if value is not None})
     if (changed.visibility, changed.airlight) != (technique.visibility, technique.airlight):

@@ -9,13 +9,17 @@ The exact control of each part:
 - lattice, with its reconstruction: every pixel;
 - float32: the pieces that the visibility reported, evaluated and summed in float64 (float64.py). Where a strategy
   places its pieces is computed in float32 all the same, and stays the visibility's.
+
+A model that takes one sample a piece is as accurate as the pieces are short, and would not be itself on those of an
+exact visibility, which go from one shadow to the next: there it samples them in the technique's steps
+(`riemann:steps`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from experiments.attribution.float64 import why_no_twin
+from experiments.attribution.float64 import POINT_SAMPLE, POINT_SAMPLES, why_no_twin
 from experiments.attribution.shapley import Coalition
 from gpu_impl.techniques import Technique
 from gpu_impl.visibilities import VISIBILITIES
@@ -90,6 +94,8 @@ def replaced(technique: Technique, coalition: Coalition) -> Technique:
         changes["visibility"] = EXACT_VISIBILITY
     elif SHADOW_MAP in coalition:
         changes["shadow_source"] = "rays"
+    if technique.airlight == POINT_SAMPLE and VISIBILITY in coalition and MODEL not in coalition:
+        changes["airlight"] = POINT_SAMPLES
     if not changes:
         return technique
     cell = replace(technique, **changes)  # type: ignore[arg-type]

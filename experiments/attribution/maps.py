@@ -51,7 +51,8 @@ def draw_maps(path: Path, attributions: Sequence[Attribution], below: str) -> No
         axes[0].set_ylabel(textwrap.fill(found.label, 26), fontsize=8)
         if row == 0:
             for axis, title in zip(axes, COLUMNS, strict=True):
-                axis.set_title(title, fontsize=9)
+                # at one height, also above what is no picture
+                axis.set_title(title, fontsize=9, y=1.0)
     bar = figure.add_axes((1 - 0.75 / width, BOTTOM / height, 0.15 / width, 1 - (TOP + BOTTOM) / height))
     shown = ScalarMappable(scale.norm(), colour_map(MAP.colour_map))
     figure.colorbar(shown, cax=bar, extend="both", extendfrac=0.04)
@@ -78,6 +79,7 @@ def _draw_row(axes: Sequence[Axes], found: Attribution) -> None:
     split = found.split
     _draw_error(axes[2], found, split.whole.signed, noisy=True)
     for axis, part in zip(axes[3:], PARTS, strict=False):
+        axis.set_box_aspect(found.reference.shape[0] / found.reference.shape[1])
         if part in split.parts:
             _draw_error(axis, found, split.parts[part].signed, noisy=False)
         else:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from experiments.attribution.coalitions import Parts, parts_of
 from experiments.attribution.pictures import Pictures
 from experiments.attribution.shapley import Coalition, coalitions
-from experiments.attribution.split import Split, split
+from experiments.attribution.split import Share, Split, split
 from experiments.metrics import Image
 from experiments.technique_label import technique_label
 from gpu_impl.techniques import Technique
@@ -47,10 +46,9 @@ class Attribution:
         """Name and changed settings of the technique, for people."""
         return technique_label(self.technique.name, vars(self.technique))
 
-    @cached_property
-    def rms_of_mean(self) -> float:
-        """Root of the whole mean squared error over the mean of the reference, a fraction; 0 where all is noise."""
-        return float(np.sqrt(max(self.split.whole.value, 0.0)) / np.mean(self.reference))
+    def of_mean(self, share: Share) -> float:
+        """Root of a squared error over the mean of the reference, with the square's sign: a fraction."""
+        return float(np.copysign(np.sqrt(abs(share.value)), share.value) / np.mean(self.reference))
 
 
 def attribute(pictures: Pictures, technique: Technique, reference: Reference, tell: Tell) -> Attribution:
@@ -77,7 +75,9 @@ def attribute(pictures: Pictures, technique: Technique, reference: Reference, te
             if not coalition:
                 raise
             exact = " and ".join(part for part in parts.there if part in coalition)
-            raise InputError(f"The error of {technique.name} cannot be split, for with exact {exact}: {error}") from None
+            raise InputError(
+                f"The error of {technique.name} cannot be split, for with exact {exact}: {error}"
+            ) from None
     noise = reference.standard_error("scattering")
     found = split(parts.there, drawn, reference.scattering, noise)
     return Attribution(technique, parts, found, drawn[Coalition()], reference.scattering, noise)

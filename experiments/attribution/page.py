@@ -6,13 +6,14 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import polars
 
 from experiments.attribution.coalitions import PARTS
 from experiments.attribution.maps import draw_maps
 from experiments.attribution.measurement import Attribution
 from experiments.attribution.stacked_bars import draw_bars
-from experiments.attribution.tables import REMAINS, as_object, rows
+from experiments.attribution.tables import REMAINS, WHOLE, as_object, rows, shares, told_rms
 from experiments.markdown import table
 from experiments.pages import made_by
 from experiments.provenance import commit, describe_reference, describe_scene
@@ -35,19 +36,21 @@ standard error of {rel_error:.2%} (95th percentile of the lit pixels).
 
 Each technique is visibility x airlight model x lattice. Each part was replaced by its exact control, in all
 combinations, and the change of the mean squared error shared out as Shapley values: what a part's replacement takes
-away, averaged over every order of replacing them. The noise of the reference is subtracted; +- is the standard error
-that it leaves. The parts and what remains add up to the whole.
+away, averaged over every order of replacing them. The parts add up to what replacing all of them takes away, which is
+the 100 % here; with what remains then, they add up to the whole error. The noise of the reference is subtracted, and
++- is the standard error that it leaves.
 
-A part may be negative. Errors of opposite sign hide each other, so that taking one away shows the other; and a model
-that samples a piece at one point relies on a visibility that reports short pieces. Where one part is much below zero
-and another much above, the two belong together, and neither number says what replacing that part alone would do:
-results.json has the error of each combination.
+A part may be negative: errors of opposite sign hide each other, so that taking one away shows the other. Where one part
+is much below zero and another much above, the two belong together, and neither number says what replacing that part
+alone would do; results.json has the error of each combination.
 
 The exact controls are: the airlight model by quadrature; the visibility by every crossing of the ray through the
 technique's own shadow map; the shadow map by the reference's shadow rays in its place; both of these by the
 reference's lit intervals; the lattice by every pixel; float32 by the same pieces evaluated and summed in float64. What
-float32 does to the places of the pieces is the visibility's, and so is what a strategy interpolates between corners.
-What remains is what the reference and the exact combination disagree on.
+float32 does to the places of the pieces is the visibility's, and so is what a strategy interpolates between corners;
+what the shader's quadrature leaves is float32's, which is more than rounding under a soft spot or one with a picture. A
+model that takes one sample a piece takes them in the technique's steps where the visibility is exact. What remains is
+what the reference and the exact combination disagree on.
 
 ## Pixel by pixel
 
@@ -64,9 +67,7 @@ these do not add up.
 FILES = ("README.md", "bars.png", "maps.png", "results.csv", "results.json", "results.parquet")
 
 
-def write_page(
-    folder: Path, scene: Scene, reference: Reference, found: Sequence[Attribution], command: str
-) -> None:
+def write_page(folder: Path, scene: Scene, reference: Reference, found: Sequence[Attribution], command: str) -> None:
     """Write `FILES` over those that are there.
 
     Parameters
@@ -109,25 +110,24 @@ def write_page(
 
 
 def _summary(found: Sequence[Attribution]) -> str:
-    """A line a technique: its error, and the share of each part."""
-    headings = ("technique", "RMS error, of the mean", *PARTS, REMAINS)
+    """A line a technique: its error, the share of each part, and what remains."""
+    headings = ("technique", "RMS of all parts, of the mean", *PARTS, f"RMS that {REMAINS}")
     lines = []
     for one in found:
-        numbers = {row["part"]: row for row in rows(one)}
-        cells = [_percent(numbers[part]["of_whole"]) for part in (*PARTS, REMAINS)]
-        rms = "noise" if one.split.whole.is_noise else f"{one.rms_of_mean:.3%}"
-        lines.append([one.label, rms, *cells])
+        split, there = one.split, shares(one)
+        cells = [_percent(split.fraction(there[part])) if part in there else "" for part in PARTS]
+        lines.append([one.label, told_rms(one, split.together), *cells, told_rms(one, split.remains)])
     return table(headings, lines)
 
 
 def _section(found: Attribution) -> str:
-    headings = ("part", "squared error", "+-", "of the whole", "image mean", "RMS")
+    headings = ("part", "squared error", "+-", "of all parts", "image mean", "RMS")
     lines = [
         [
             row["part"],
             f"{row['squared_error']:.4e}",
             f"{row['standard_error']:.1e}",
-            _percent(row["of_whole"]),
+            "" if row["of_parts"] is None or row["part"] in (WHOLE, REMAINS) else _percent(row["of_parts"]),
             f"{row['image_mean']:+.4%}",
             f"{row['rms']:.4%}",
         ]
@@ -135,10 +135,9 @@ def _section(found: Attribution) -> str:
         if not row["left_out"]
     ]
     left_out = [f"- {part}: {reason}." for part, reason in found.parts.left_out.items()]
-    noise = ["The whole error cannot be told from the reference's noise.", ""] if found.split.whole.is_noise else []
-    text = [f"### {found.label}", "", *noise, table(headings, lines)]
+    text = [f"### {found.label}", "", table(headings, lines)]
     return "\n".join([*text, *(["", "Left out:", "", *left_out] if left_out else [])])
 
 
-def _percent(share: float | None) -> str:
-    return "" if share is None else f"{share:.2%}"
+def _percent(fraction: float) -> str:
+    return "noise" if np.isnan(fraction) else f"{fraction:.2%}"

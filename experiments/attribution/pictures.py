@@ -49,15 +49,15 @@ class Pictures:
         lights = []
         for number, recorded in enumerate(self._renderer.record(cell)):
             positions = recorded.positions.astype(np.float64)
-            far = self.scene.camera.rays(positions)[2].ravel()
-            rays = Rays.of_camera(self.scene, far, positions)
+            end = (recorded.start + np.maximum(recorded.t_max, 0)).astype(np.float64).ravel()
+            rays = Rays.of_camera(self.scene, end, positions)
             if VISIBILITIES[cell.visibility].given:
                 # as they were found, before OpenGL rounded them
                 pieces = _whole(self._find_lit(self.scene, number, positions))
             else:
                 pieces = _reported(recorded)
             light = self.scene.lights[number]
-            airlight = airlight_of_pieces(self.scene, light, cell.airlight, rays, pieces)
+            airlight = airlight_of_pieces(self.scene, light, cell.airlight, cell.steps, rays, pieces)
             lights.append(airlight.reshape(*recorded.start.shape, 3))
         if cell.lattice == EVERY_PIXEL and cell.downsample == 1:
             # the cells are the pixels: nothing is left for OpenGL to round

@@ -14,7 +14,8 @@ from experiments.attribution.measurement import Attribution, attribute
 from experiments.attribution.page import write_page
 from experiments.attribution.pictures import Pictures
 from experiments.attribution.shapley import Coalition
-from experiments.attribution.tables import REMAINS, shares
+from experiments.attribution.split import Share
+from experiments.attribution.tables import REMAINS, shares, told_rms
 from experiments.bars import Bars
 from experiments.console import console, plain_table, say
 from experiments.terminal import COLUMNS
@@ -76,27 +77,24 @@ def run_attribution(
 
 def attribution_table(found: Sequence[Attribution]) -> Table:
     """A line a technique: its error, and in per cent what each part has of its square."""
-    table = plain_table(Text("Share of the mean squared error of the scattering layer [%], +- standard error"))
+    table = plain_table(Text("Share of each part in the mean squared error of the scattering layer [%]"))
     table.add_column("technique", overflow="fold")
     for heading in ("RMS", *PARTS, REMAINS):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True)
     for one in found:
-        whole, there = one.split.whole, shares(one)
-        cells = []
-        for name in (*PARTS, REMAINS):
-            if name not in there:
-                cells.append("-")
-            elif whole.is_noise:
-                cells.append("noise")
-            else:
-                cells.append(f"{100 * one.split.of_whole(there[name]):.2f} +- {_error(one, name):.2g}")
-        table.add_row(one.label, "noise" if whole.is_noise else f"{one.rms_of_mean:.3%}", *cells)
-    reasons = {(part, reason) for one in found for part, reason in one.parts.left_out.items()}
-    table.caption = "RMS: root of the whole over the reference's mean. " + "; ".join(
-        f"- {part}: {reason}" for part, reason in sorted(reasons)
+        there = shares(one)
+        cells = [_cell(one, there[part]) if part in there else "-" for part in PARTS]
+        table.add_row(one.label, told_rms(one, one.split.together), *cells, told_rms(one, one.split.remains))
+    reasons = dict.fromkeys(f"{part}: {reason}" for one in found for part, reason in one.parts.left_out.items())
+    table.caption = (
+        "RMS: root of what all parts have together, over the reference's mean, and of what remains with all of them "
+        "exact. +-: standard error by the reference's noise. " + f"-: {'; '.join(reasons)}." * bool(reasons)
     )
     return table
 
 
-def _error(found: Attribution, name: str) -> float:
-    return 100 * shares(found)[name].standard_error / found.split.whole.value
+def _cell(found: Attribution, share: Share) -> str:
+    if found.split.together.is_noise:
+        return "noise"
+    error = 100 * share.standard_error / abs(found.split.together.value)
+    return f"{100 * found.split.fraction(share):.2f} +- {error:.2f}"

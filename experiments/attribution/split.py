@@ -8,8 +8,8 @@ is the mean squared error that replacing the coalition S leaves. The Shapley val
 v(all), and their per-pixel companions, the Shapley values D of the signed errors t_S - r, to t_nothing - t_all.
 
 In v(S) - v(S + i) the squares of r cancel: it is mean (t_S - t_Si)(t_S + t_Si - 2 r), linear in r with the slope
--2 (t_S - t_Si) / N at each of N values. So phi_i is linear in r too, with the slope -2 D_i / N, and noise that is
-independent from pixel to pixel gives it the variance
+-2 (t_S - t_Si) / N at each of N values. So phi_i is linear in r too, with the slope -2 D_i / N, and so is the sum of
+the parts with that of the D_i. Noise that is independent from pixel to pixel gives them the variance
 
     sum over pixels (sum over channels 2 |D_i| s / N)^2,
 
@@ -61,23 +61,26 @@ class Split:
     ----------
     whole : Share             with nothing replaced
     parts : dict              name of a part to its share
+    together : Share          the sum of the parts: what replacing all of them takes away
     remains : Share           with all of them replaced
     left : dict               coalition to v, the mean squared error that replacing it leaves [radiance^2]
     """
 
     whole: Share
     parts: dict[str, Share]
+    together: Share
     remains: Share
     left: dict[Coalition, float]
 
-    def of_whole(self, share: Share) -> float:
-        """A share as a fraction of the whole error; NaN where that cannot be told from noise."""
-        return float("nan") if self.whole.is_noise else share.value / self.whole.value
+    def fraction(self, share: Share) -> float:
+        """A share over the parts together; NaN where their sum cannot be told from noise.
+
+        Not over the whole, whose noise is of the square of the reference's: the parts are known where it is not.
+        """
+        return float("nan") if self.together.is_noise else share.value / self.together.value
 
 
-def split(
-    parts: Sequence[str], pictures: Mapping[Coalition, Image], reference: Image, standard_error: Image
-) -> Split:
+def split(parts: Sequence[str], pictures: Mapping[Coalition, Image], reference: Image, standard_error: Image) -> Split:
     """Split the error of the picture in which nothing is replaced.
 
     Parameters
@@ -110,6 +113,7 @@ def split(
     return Split(
         whole=share(left[nothing], signed[nothing]),
         parts={part: share(values[part], maps[part]) for part in parts},
+        together=share(left[nothing] - left[everything], signed[nothing] - signed[everything]),
         remains=share(left[everything], signed[everything]),
         left=left,
     )

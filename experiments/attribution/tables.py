@@ -13,56 +13,62 @@ from experiments.attribution.split import Share
 from experiments.provenance import TECHNIQUE_KEYS
 
 # what is no part, and stands in the same tables
-WHOLE, REMAINS = "whole", "remains"
+WHOLE, TOGETHER, REMAINS = "whole", "parts together", "remains"
+NUMBERS = ("squared_error", "standard_error", "of_parts", "of_mean", "image_mean", "rms")
 Row = dict[str, Any]
 
 
 def settings(found: Attribution) -> dict[str, Any]:
     """The technique's fields, called as in all tables of results."""
     technique = found.technique
-    return {
-        TECHNIQUE_KEYS.get(field.name, field.name): getattr(technique, field.name) for field in fields(technique)
-    }
+    return {TECHNIQUE_KEYS.get(field.name, field.name): getattr(technique, field.name) for field in fields(technique)}
 
 
 def shares(found: Attribution) -> dict[str, Share]:
-    """The whole error, its parts and what remains, by name."""
-    return {WHOLE: found.split.whole, **found.split.parts, REMAINS: found.split.remains}
+    """The whole error, its parts, what they are together and what remains, by name."""
+    split = found.split
+    return {WHOLE: split.whole, **split.parts, TOGETHER: split.together, REMAINS: split.remains}
+
+
+def told_rms(found: Attribution, share: Share) -> str:
+    """Root of a squared error over the reference's mean, in words; below three standard errors it is a bound."""
+    if share.is_noise:
+        return f"< {np.sqrt(3 * share.standard_error) / np.mean(found.reference):.2%}"
+    return f"{found.of_mean(share):.3%}"
 
 
 def rows(found: Attribution) -> list[Row]:
-    """A row for the whole error, for each of the five parts, and for what remains.
+    """A row for the whole error, for each of the five parts, for those together, and for what remains.
 
     squared_error, standard_error    Shapley value of the mean squared error [radiance^2]; empty for a part left out
-    of_whole                         the same as a fraction of the whole; empty where that is noise
+    of_parts                         the same over that of the parts together; empty where that is noise
+    of_mean                          root of the squared error over the reference's mean, with the square's sign
     image_mean                       mean of the signed map over the reference's mean: what the part does to it
     rms                              root mean square of the signed map over the reference's mean
     """
     mean = float(np.mean(found.reference))
     about, there, lines = settings(found), shares(found), []
-    for name in (WHOLE, *PARTS, REMAINS):
-        share = there.get(name)
-        numbers: Row = dict.fromkeys(("squared_error", "standard_error", "of_whole", "image_mean", "rms"))
-        if share is not None:
-            of_whole = found.split.of_whole(share)
-            numbers = {
-                "squared_error": share.value,
-                "standard_error": share.standard_error,
-                "of_whole": None if np.isnan(of_whole) else of_whole,
-                "image_mean": float(np.mean(share.signed)) / mean,
-                "rms": float(np.sqrt(np.mean(share.signed**2))) / mean,
-            }
+    for name in (WHOLE, *PARTS, TOGETHER, REMAINS):
+        numbers: Row = dict.fromkeys(NUMBERS)
+        if name in there:
+            share = there[name]
+            fraction = found.split.fraction(share)
+            values = (
+                share.value,
+                share.standard_error,
+                None if np.isnan(fraction) else fraction,
+                found.of_mean(share),
+                float(np.mean(share.signed)) / mean,
+                float(np.sqrt(np.mean(share.signed**2))) / mean,
+            )
+            numbers = dict(zip(NUMBERS, values, strict=True))
         lines.append({**about, "part": name, **numbers, "left_out": found.parts.left_out.get(name, "")})
     return lines
 
 
 def as_object(found: Attribution) -> dict[str, Any]:
     """Everything of one technique, the worth of each coalition too, named by what it replaces."""
-    numbers = {
-        row["part"]: {key: row[key] for key in ("squared_error", "standard_error", "of_whole", "image_mean", "rms")}
-        for row in rows(found)
-        if not row["left_out"]
-    }
+    numbers = {row["part"]: {key: row[key] for key in NUMBERS} for row in rows(found) if not row["left_out"]}
     left = {
         " + ".join(part for part in PARTS if part in coalition): value for coalition, value in found.split.left.items()
     }

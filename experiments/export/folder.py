@@ -105,7 +105,7 @@ The ray through the centre of the pixel in column i and row j, both from 0:
     direction = normalised(forward + x tan(fov_x / 2) right + y tan(fov_y / 2) up)
     end = position + distance direction
 
-To compare a picture of your engine with the reference, save it as an EXR of the same size, linear, with plain R, G and B:
+To compare a picture of your engine with the reference, save it as an EXR of the same size, with plain linear R, G, B:
     {command}
     airlight compare yours.exr reference.exr                        the whole picture
     airlight compare yours.exr reference.exr --layer scattering     the light of the fog alone

@@ -20,6 +20,7 @@ from experiments.figures.panels import (
 )
 from experiments.figures.stage import Stage
 
+# twice as many as `Dobashi2002` has: still few enough for bands to be seen
 SLICES = 128
 
 
@@ -73,16 +74,15 @@ def aliasing(stage: Stage) -> Drawn:
 
 
 def slices(stage: Stage) -> Drawn:
-    """Figure 2.1, by equal steps in place of slices."""
+    """Figure 2.1, by slices parallel to the image."""
     scene = stage.scene("dragon")
-    frame, truth = stage.frame(scene, "Nishita1987", steps=SLICES), stage.reference(scene)
+    frame, truth = stage.frame(scene, "Dobashi2002", steps=SLICES), stage.reference(scene)
     figure, axes = picture_grid(1, 2, side=3.2)
-    show(axes[0, 0], frame.composite, truth.composite, f"{SLICES} equal steps a ray, not Dobashi2002")
+    show(axes[0, 0], frame.composite, truth.composite, f"Dobashi2002, {SLICES} slices")
     show(axes[0, 1], truth.composite, truth.composite, "reference")
     return Drawn(
         figure,
-        f"Not Dobashi et al.'s picture, and not their technique, which airlight does not have yet: `Nishita1987` with "
-        f"{SLICES} equal steps a ray in a spot's beam (`dragon`), where their slices are parallel to the image plane. "
-        f"It shows what the thesis shows theirs for, shafts of light, and bands where slices are few. Errors of the "
-        f"airlight: {in_words(scattering_error(frame, truth))}.",
+        f"Not Dobashi et al.'s picture, which the thesis shows, but their technique: `Dobashi2002` with {SLICES} slices "
+        f"in a spot's beam (`dragon`). Shafts of light, and bands where slices cut their edges. Errors of the airlight: "
+        f"{in_words(scattering_error(frame, truth))}.",
     )

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 # ours has a colour and a mark of its own
 *COLOURS, OUR_COLOUR = OKABE_ITO
-MARKS, OUR_MARK = "osvD^Pp", "*"
+MARKS, OUR_MARK = "osvD^PX", "*"
 STRENGTH = {Standing.FRONT: 1.0, Standing.UNDECIDED: 1.0, Standing.BEHIND: 0.35}
 CAPTION = """{where}: error against the time of a frame{mean}, left by {left}, right by {right}. The line is the front,
 its members numbered from the cheapest; hollow points are not to be told apart from it, pale ones are behind. Bars are

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from experiments.markdown import table as markdown_table
 from experiments.pareto.front import Point, Standing, standing
 from experiments.pareto.points import MEASURES, Measure, Scene, geometric_mean, is_ours
-from experiments.studies.cells import Row
+from experiments.studies.cells import Row, label
 from experiments.studies.timing import short
 
 BEST = """The lattice that serves ours best is **{best}**: on {on} of {all} fronts{ties}.{runner_up} Lattices are ranked
 by the fronts that they are on, each scene's by either measure, and those on as many by error times cost, its geometric
 mean over scenes and measures: as much better for half the error as for half the time. Where a front has several, the
 error or the time that one can afford decides."""
+
+
+# settings that say on which lattice
+LATTICE = ("lattice", "downsample", "upsample")
 
 
 @dataclass(frozen=True)
@@ -48,42 +53,44 @@ def lattice_of(row: Row) -> str:
 
 
 def served(scenes: Sequence[Scene]) -> list[Served]:
-    """Every lattice that ours ran on in each scene, the best first.
-
-    Where ours ran with other settings too, a lattice is as good as the best of them, that of the least error times
-    cost.
-    """
-    with_ours = [scene for scene in scenes if any(map(is_ours, scene.rows))]
-    names = [{lattice_of(row) for row in scene.rows if is_ours(row)} for scene in with_ours]
-    everywhere = [name for name in _in_order(with_ours) if all(name in found for found in names)]
-    return sorted(
-        (_served(name, with_ours) for name in everywhere), key=lambda one: (-one.fronts, one.product, one.name)
-    )
-
-
-def _in_order(scenes: Sequence[Scene]) -> list[str]:
-    return list(dict.fromkeys(lattice_of(row) for scene in scenes for row in scene.rows if is_ours(row)))
+    """Every lattice that ours ran on in each scene, with one set of other settings, the best first."""
+    ours = [[row for row in scene.rows if is_ours(row)] for scene in scenes]
+    with_ours = [scene for scene, rows in zip(scenes, ours, strict=True) if rows]
+    # that of the most rows: shadow maps of other sizes, say, ran on the full grid alone
+    counted = Counter(label(row, *LATTICE) for rows in ours for row in rows)
+    if not counted:
+        return []
+    settings = counted.most_common(1)[0][0]
+    names = [dict.fromkeys(_candidates(scene, settings)) for scene in with_ours]
+    everywhere = [name for name in names[0] if all(name in found for found in names)]
+    found = (_served(name, settings, with_ours) for name in everywhere)
+    return sorted(found, key=lambda one: (-one.fronts, one.product, one.name))
 
 
-def _served(name: str, scenes: Sequence[Scene]) -> Served:
-    found = {measure: [_candidate(scene, measure, name) for scene in scenes] for measure in MEASURES}
-    every = [one for candidates in found.values() for one in candidates]
+def _candidates(scene: Scene, settings: str) -> dict[str, str]:
+    """The lattices of ours with these other settings, and the labels of their rows."""
+    mine = [row for row in scene.rows if is_ours(row) and label(row, *LATTICE) == settings]
+    return {lattice_of(row): label(row) for row in mine}
+
+
+def _served(name: str, settings: str, scenes: Sequence[Scene]) -> Served:
+    points: dict[Measure, list[Point]] = {measure: [] for measure in MEASURES}
+    stands: list[Standing] = []
+    for scene in scenes:
+        wanted = _candidates(scene, settings)[name]
+        for measure, mine in points.items():
+            every = scene.points(measure)
+            mine += [point for point in every if point.name == wanted]
+            stands.append(standing(mine[-1], every))
+    both = [point for mine in points.values() for point in mine]
     return Served(
         name,
-        sum(where == Standing.FRONT for _, where in every),
-        sum(where == Standing.UNDECIDED for _, where in every),
-        tuple(geometric_mean(point.error for point, _ in found[measure]) for measure in MEASURES),
-        geometric_mean(point.cost for point, _ in every),
-        geometric_mean(point.error * point.cost for point, _ in every),
+        stands.count(Standing.FRONT),
+        stands.count(Standing.UNDECIDED),
+        tuple(geometric_mean(point.error for point in mine) for mine in points.values()),
+        geometric_mean(point.cost for point in both),
+        geometric_mean(point.error * point.cost for point in both),
     )
-
-
-def _candidate(scene: Scene, measure: Measure, name: str) -> tuple[Point, Standing]:
-    """The best point of ours on a lattice in one scene, and the best standing that any of them has."""
-    points = scene.points(measure)
-    mine = [p for row, p in zip(scene.rows, points, strict=True) if is_ours(row) and lattice_of(row) == name]
-    stands = {standing(point, points) for point in mine}
-    return min(mine, key=lambda p: p.error * p.cost), next(one for one in Standing if one in stands)
 
 
 def lattice_section(scenes: Sequence[Scene]) -> str:

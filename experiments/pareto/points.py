@@ -43,6 +43,8 @@ INTERVAL = ("timing.ratio_low", "timing.ratio_50", "timing.ratio_high")
 PHASE_KEYS = ("phase", "g", "k", "values")
 # the cell that the project itself puts forward
 OURS = ("exact", "quadrature")
+# what the means over the scenes are called
+ALL = "all scenes"
 
 
 @dataclass(frozen=True)

@@ -193,7 +193,8 @@ def digest_of(suite: Suite, cases: Sequence[Case], scenes: Sequence[str]) -> str
     ----------
     scenes : digests of the scenes, their meshes and pictures, and of committed references
     """
-    told = [suite.model_dump_json(), *(case.name for case in cases), *scenes]
+    # a technique of somebody's own has parts that are named by what their files hold
+    told = [suite.model_dump_json(), *(f"{case.name} {case.technique} {case.baseline}" for case in cases), *scenes]
     return hashlib.sha256("\0".join(told).encode()).hexdigest()
 
 

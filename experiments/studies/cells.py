@@ -6,15 +6,14 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from experiments.markdown import one_line, table
-from experiments.technique_label import technique_label
-from gpu_impl.techniques import find_technique
+from experiments.technique_label import own_settings, technique_label
 
 Row = dict[str, Any]
 
 
 def label(row: Row, *without: str) -> str:
     """A row's technique with its settings, those left out that have an axis or a column of their own."""
-    own = find_technique(row["technique"])
+    own = own_settings(row["technique"])
     return technique_label(row["technique"], row | {name: getattr(own, name) for name in without})
 
 

@@ -16,9 +16,9 @@ from experiments.suite.schema import Product, Suite
 from scenes.errors import InputError
 from scenes.file_names import check_name
 from scenes.messages import readable
+from scenes.toml_places import Key, is_there, line_of
 
 FOLDER = Path(__file__).parent.parent / "suites"
-Key = tuple[str | int, ...]
 # digits: no list in a file has more than a million items
 LONGEST_INDEX = 6
 
@@ -62,7 +62,8 @@ def load_suite(suite: str, changes: Sequence[str] = ()) -> tuple[str, Suite]:
         raise InputError(f"{path} cannot be read ({error.strerror}).") from None
     changed = [key for change in changes for key in _change(found, change)]
     try:
-        return path.stem, Suite.model_validate({**_with_products(found), "folder": path.absolute().parent})
+        folder = path.absolute().parent
+        return path.stem, Suite.model_validate({**_with_products(found), "folder": folder}, context={"folder": folder})
     except ValidationError as error:
         raise InputError(_explained(error, path, text, found, changed)) from None
 
@@ -156,10 +157,10 @@ def _explained(error: ValidationError, path: Path, text: str, found: dict[str, A
     # ("products", 0, "techniques", 1, "steps"): where the file has no products, what follows
     location: Key = tuple(first["loc"])
     key = location[2:] if location[:1] == ("products",) and len(location) > 1 else location
-    if "products" in found and location[:1] == ("products",) and _there(found, location):
+    if "products" in found and location[:1] == ("products",) and is_there(found, location):
         key = location
     # what was one value in the file is a list of one to the schema
-    while first["type"] != "missing" and len(key) > 1 and not _there(found, key):
+    while first["type"] != "missing" and len(key) > 1 and not is_there(found, key):
         key = key[:-1]
     # pydantic's preface to what a validator says
     message = first["msg"].removeprefix("Value error, ").rstrip(".")
@@ -168,42 +169,6 @@ def _explained(error: ValidationError, path: Path, text: str, found: dict[str, A
         return f"{path}: {message}."
     if any(key[: len(one)] == one for one in changed):
         return f"{path}: the key '{name}', as --set has it: {message}."
-    line = _line(text, key)
+    line = line_of(text, key)
     where = f" (line {line})" if line else ""
     return f"{path}{where}: the key '{name}': {message}."
-
-
-def _there(found: Any, key: Key) -> bool:
-    """Whether the file's tables have such a key."""
-    at = found
-    for part in key:
-        # a text has parts too, but no keys
-        if not isinstance(at, dict | list):
-            return False
-        try:
-            at = at[part]  # type: ignore[index]
-        except (LookupError, TypeError):
-            return False
-    return True
-
-
-def _line(text: str, key: Key) -> int | None:
-    """The line on which a key stands: the first with which the file, cut off behind it, would have it.
-
-    TOML's reader keeps no places. A value over several lines makes all cuts inside it unreadable, so its first line is
-    the one after the last readable cut.
-    """
-    while key:
-        before = 0
-        lines = text.splitlines(keepends=True)
-        for number in range(1, len(lines) + 1):
-            try:
-                cut = tomllib.loads("".join(lines[:number]))
-            except tomllib.TOMLDecodeError:
-                continue
-            if _there(cut, key):
-                return before + 1
-            before = number
-        # a key that is missing: the table that lacks it
-        key = key[:-1]
-    return None

@@ -76,7 +76,10 @@ class Settings(_Strict):
 
 
 class TechniqueChoice(Settings):
-    """A technique by name, with parts and settings that differ from its own: those of `gpu_impl.techniques`."""
+    """A technique by name, with parts and settings that differ from its own: those of `gpu_impl.techniques`.
+
+    One of somebody's own is named by the path of its file, from the working directory or else from the suite's folder.
+    """
 
     name: str
     visibility: str | None = None
@@ -84,7 +87,11 @@ class TechniqueChoice(Settings):
 
     @field_validator("name")
     @classmethod
-    def _is_known(cls, name: str) -> str:
+    def _is_known(cls, name: str, info: ValidationInfo) -> str:
+        if name.endswith(".toml"):
+            # which means the same in every process, and is there by now or never
+            beside = (info.context or {}).get("folder", Path()) / name
+            name = str((beside if beside.is_file() and not Path(name).is_file() else Path(name)).absolute())
         _look_up(name)
         return name
 

@@ -33,6 +33,15 @@ vec3 airlight(Ray ray, Light light, float t0, float dt);
 // A STRATEGY defines
 //     void visibility(Ray ray, Light light)
 // and reports lit pieces, in any order, by calling lit(). w is any real number: 1 for a lit interval, a fraction for
-// filtered visibility, +1 and -1 for shadow-volume faces that are added and subtracted.
+// filtered visibility, +1 and -1 for shadow-volume faces that are added and subtracted. It asks in_shadow() of points
+// (shadow_lookup.glsl), or whatever else its Supply brings (gpu_impl/visibilities/strategy.py). It is called once for each
+// cell of the lattice; or, where it brings a vertex shader that draws slices or faces, once for each of their fragments,
+// whose results are added up.
 void visibility(Ray ray, Light light);
 void lit(float t0, float dt, float w);
+
+// A LATTICE defines
+//     vec2 position_of(ivec2 cell)
+// where in the image the ray of a cell goes [pixel], the first pixel's centre being (0.5, 0.5); outside the image for a
+// cell without a ray. What it evaluates comes to all pixels by an upsampling, or by its own
+//     vec4 upsampled(ivec2 pixel)

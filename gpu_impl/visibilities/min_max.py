@@ -1,17 +1,18 @@
 """The rectified shadow map, with a tree of least and largest thresholds over each of its rows.
 
-In an epipolar plane (epipolar_planes.py) a ray of the eye is at the angle gamma to the axis, and a light ray at the
-angle beta to it, seen from the light; of parallel light rays each has an offset b from the axis. A light ray is lit up
-to its first occluder, at the distance r from the light, and as gamma grows with the distance at which it is crossed,
-    r sin(gamma) = D sin(beta) ... lit where gamma <= gamma_o,  cot gamma_o = (D - r cos beta) / (r sin beta),
-D being the distance from eye to light; for parallel light cot gamma_o = x / b, x how far the occluder is towards the
-light from the eye. So of the occluder nothing matters but one number, and the ray of the eye compares the same
-cot gamma with those of all light rays that it crosses. In a row of them the least and the largest of 2, 4, 8 ...
-neighbours tell whether all of them are lit, or none.
+In an epipolar plane (epipolar_planes.py) a ray of the eye is at the angle gamma to the axis; a light ray is at the
+angle beta to it, seen from the light, and one of parallel light at the distance b. The light ray is lit up to its first
+occluder, at the distance r from the light. The further out it crosses a ray of the eye, the larger is that ray's gamma,
+so that all with a gamma up to the occluder's are lit where they cross it and all others are dark. The occluder has
+    cot gamma = (D - r cos beta) / (r sin beta),    or x / b,
+D being the distance from eye to light, and x how far the occluder is from the eye towards parallel light. Nothing but
+this one number of it matters, and the ray of the eye compares one number, its own cotangent, with those of all light
+rays that it crosses. The least and the largest of 2, 4, 8 ... neighbours in a row tell whether all of them are lit, or
+none.
 
-What the map holds is taken at the middle of a column and stands for all of it. Where an occluder lies so near to the
-axis that a column is not narrow beside its beta, that is a fault of the method: light that stands at the eye, or is
-seen within a column of the ray.
+A column of a row has the number of the light ray in its middle. What a shadow map's texel does to the shadow's edge,
+the column does once more, as it does not lie on the texel; and off the lattice epipolar, where rays lie between rows,
+so does the row.
 
 Source: Chen, Baran, Durand and Jarosz 2011, "Real-Time Volumetric Shadows using 1D Min-Max Mipmaps", sections 3 and 4.
 """
@@ -80,8 +81,8 @@ def _trees(inputs: FogInputs, rows: int, columns: int, uniforms: dict[str, Any])
     size, most = NODE_BYTES * 2 * columns * rows, device.context.info["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"]
     if size > most:
         raise InputError(
-            f"{rows} rows of {columns} thresholds take {size / 1e6:.0f} MB, and a buffer of this OpenGL holds "
-            f"{most / 1e6:.0f} MB: make the image or the shadow map smaller, or downsample more."
+            f"{rows} rows of {columns} thresholds take {size / 1e6:.3g} MB, and a buffer of this OpenGL holds "
+            f"{most / 1e6:.3g} MB: make the image or the shadow map smaller, or downsample more."
         )
     with inputs.clock.time_pass("shadow map"):
         buffer = device.buffer(size)

@@ -42,7 +42,7 @@ class Slices(Supply):
         with inputs.clock.time_pass("scattering"):
             program = device.program(
                 "slices/range.frag.glsl",
-                defines=light_defines(scene, light) | defines,
+                defines={**light_defines(scene, light), **defines},
                 includes={"<lattice>": inputs.lattice.kind.source},
             )
             set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, inputs.pictures))

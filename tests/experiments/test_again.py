@@ -24,10 +24,12 @@ from scenes.model import Scene
 SETTINGS: dict[str, Any] = {
     "steps": 37,
     "shadow_map": 96,
+    "lattice": "grid",
     "downsample": 2,
     "upsample": "nearest_depth",
     "surface_shadows": "soft",
     "shadow_storage": "buffer",
+    "shadow_source": "rays",
     "composition": "printed",
 }
 MESHES = """<default name='mesh' value='wall.obj'/>
@@ -83,10 +85,13 @@ def test_each_field_of_a_technique_is_kept_under_a_key_of_its_own(tmp_path: Path
     assert {TECHNIQUE_KEYS.get(field.name, field.name) for field in fields(Technique)} <= parts[2].keys()
 
 
-@pytest.mark.parametrize("technique", ["Weng2010", "uniform_march+quadrature"])
-def test_a_shipped_scene_is_drawn_again(tmp_path: Path, technique: str) -> None:
+@pytest.mark.parametrize(
+    ("technique", "changed"),
+    [("Weng2010", {}), ("uniform_march+quadrature", {"lattice": "epipolar"}), ("Chen2011", {"lattice": "epipolar"})],
+)
+def test_a_shipped_scene_is_drawn_again(tmp_path: Path, technique: str, changed: dict[str, str]) -> None:
     scene = airlight.load("sphere", size=(13, 9), sigma_t=0.3, phase="isotropic")
-    frame = airlight.render(scene, technique, **SETTINGS)
+    frame = airlight.render(scene, technique, **SETTINGS | changed)
     airlight.save(tmp_path / "f.exr", scene, frame)
     assert read_exr(tmp_path / "f.exr")[1]["scene_file"] == "sphere"
     again = draw_again(tmp_path / "f.exr")

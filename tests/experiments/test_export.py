@@ -1,4 +1,4 @@
-"""The export alone gives another engine every ray, every depth and every light: rebuilt here in numpy from its files."""
+"""The export alone gives another engine every ray, every depth and every light: rebuilt here in numpy."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from plain_exr import PlainExr, read_plain
-from scene_files import point, spot, sphere, write_scene
+from scene_files import point, sphere, spot, write_scene
 
 from experiments.export import write_export
 from scenes.errors import InputError

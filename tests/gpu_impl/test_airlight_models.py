@@ -195,8 +195,8 @@ def seen(name: str, kind: str, path: str, old: str, new: str) -> None:
     assert text.count(old) == 1
     wrong = shade(name, function, {path: text.replace(old, new)})[:, 0]
     ours, twins = worst_rounding(name, function, wrong, twin(name, function, np.float32))
-    # measured: 6.9 times for J_e in the print, whose other terms are large, 108 for llvmpipe's arc tangent; 2e4 times or
-    # more for the others
+    # measured: 6.9 times for J_e in the print, whose other terms are large, 108 for llvmpipe's arc tangent; 2e4 times
+    # or more for the others
     assert ours > 2.5 * WORST_RATIO * twins
 
 

@@ -1,4 +1,4 @@
-"""James 2003: shadow-volume faces, signed and unsorted, against shadows of closed form and rays that the reference casts.
+"""James 2003: shadow-volume faces, signed and unsorted, against shadows of closed form and the reference's rays.
 
 Pictures are drawn with a shadow map of a few texels: the fog does without.
 """
@@ -17,6 +17,7 @@ from shadow_volumes import behind_polygon, meet, shadowed_airlight
 
 from analytic.models.depth_fog import depth_fog
 from gpu_impl.frame import Frame
+from gpu_impl.recording import Pieces
 from gpu_impl.renderer import Renderer
 from gpu_impl.shadow_casters import parts_of, sides_of
 from gpu_impl.techniques import find_technique
@@ -28,7 +29,10 @@ FACES = "shadow_faces+quadrature"
 # a level plate and its edges in x, between a light above and an eye that looks at the fog below
 LIGHT = point(0.3, 2.6, 0)
 UPPER, LOWER = Plate(1.9, -1.2, 0.1), Plate(1.5, -0.4, 0.9)
-CUBE = "<shape type='cube'><transform name='to_world'><scale value='{0}'/><translate x='{1}' y='{2}' z='{3}'/></transform></shape>"
+CUBE = (
+    "<shape type='cube'><transform name='to_world'><scale value='{0}'/><translate x='{1}' y='{2}' z='{3}'/></transform>"
+    "</shape>"
+)
 SUN = (
     "<emitter type='directional'><vector name='direction' value='0.6, -1, -0.3'/>"
     "<rgb name='irradiance' value='3, 2, 1'/></emitter>"
@@ -45,8 +49,8 @@ def drawn(scene: Scene, technique: str = FACES, **settings: object) -> Frame:
 
 
 def unlike(image: np.ndarray, exact: np.ndarray) -> float:
-    """Largest error, of the brightest pixel."""
-    return float(np.abs(image - exact).max() / exact.max())
+    """Largest error, of the brightest pixel, or of the one that is furthest below 0."""
+    return float(np.abs(image - exact).max() / np.abs(exact).max())
 
 
 def behind_plate(scene: Scene, plate: Plate, t_end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -62,11 +66,14 @@ def lit_lengths(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """
     with Renderer(scene) as renderer:
         (pieces,) = renderer.record(find_technique(FACES, shadow_map=4))
-    count = scene.camera.width * scene.camera.height
-    # in float64: pieces that go on to the far plane cancel
-    ours = np.bincount(pieces.cell, pieces.w.astype(np.float64) * pieces.dt, minlength=count)
     found = lit_intervals(scene)
-    return ours, np.bincount(found.pixel, found.end - found.begin, minlength=count)
+    count = scene.camera.width * scene.camera.height
+    return signed_lengths(pieces), np.bincount(found.pixel, found.end - found.begin, minlength=count)
+
+
+def signed_lengths(pieces: Pieces) -> np.ndarray:
+    """Pieces' lengths times their weights, added up for each cell, in float64: most are long, and cancel."""
+    return np.bincount(pieces.cell, pieces.w.astype(np.float64) * pieces.dt, minlength=pieces.start.size)
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [("half_plane", 6e-6), ("slit", 2e-6)])
@@ -107,13 +114,13 @@ def test_what_two_shadows_share_is_taken_away_twice(technique: str, tmp_path: Pa
     whole = model(scene, light, np.zeros_like(t_end), t_end)
     overlap = model(scene, light, *both)
     truth = whole - model(scene, light, *upper) - model(scene, light, *lower) + overlap
-    # a third of the pixels has some: 1,105 of 3,072
-    shares = overlap[..., 0] > 1e-3 * whole[..., 0]
-    assert shares.sum() > 1000
+    assert (overlap > 0.1 * whole.max()).any(axis=-1).mean() > 0.25
     too_dark = truth - frame.scattering
-    # measured: 1.7e-6 (quadrature) and 6.3e-7 (depth_fog) of the brightest pixel, whose overlap is up to 0.35 of it
-    assert np.abs(too_dark - overlap).max() < 5e-6 * whole.max()
-    assert overlap.max() > 0.1 * whole.max()
+    # Rays along a plate's edge may miss the plate and its faces both, whose corners are rounded differently where they
+    # are clipped: measured 2 of 3,072, and 5.1e-7 (quadrature)
+    # and 4.4e-7 (depth_fog) of the brightest pixel for all others; of it up to 0.47 and 0.71 are taken away twice.
+    off = np.sort((np.abs(too_dark - overlap) / whole.max()).max(axis=-1).ravel())
+    assert off[-4] < 2e-6
 
 
 def test_three_shadows_leave_less_than_nothing(tmp_path: Path) -> None:
@@ -126,14 +133,16 @@ def test_three_shadows_leave_less_than_nothing(tmp_path: Path) -> None:
     for plate in plates:
         expected = expected - piece_airlight(scene, light, *behind_plate(scene, plate, t_end))
     assert frame.scattering.min() < -0.5 * frame.scattering.max()
-    # measured: 1.2e-6
+    # measured: 4.9e-7
     assert unlike(frame.scattering, expected) < 4e-6
 
 
-def test_an_eye_in_two_volumes(tmp_path: Path) -> None:
-    """The first piece has weight -1 then, and the faces give back what they may."""
-    plates = [Plate(2.2, -3, 0.2), Plate(1.8, -3, 0.6)]
-    scene = write_scene(tmp_path, point(1.5, 3.2, 0), "".join(plate.xml() for plate in plates), eye="-0.6, 0, 4")
+@pytest.mark.parametrize("side", [1, -1])
+def test_an_eye_in_two_volumes(side: int, tmp_path: Path) -> None:
+    """The first piece has weight -1 then, and the faces give back what they may; sheets have no side that is theirs."""
+    plates = [Plate(2.2 * side, -3, 1.0), Plate(1.8 * side, -3, 0.8)]
+    shapes = "".join(plate.xml() for plate in plates)
+    scene = write_scene(tmp_path, point(1.5, 3.2 * side, 0), shapes, eye="-0.6, 0, 4")
     with Renderer(scene) as renderer:
         (pieces,) = renderer.record(find_technique(FACES, shadow_map=4))
     assert set(pieces.w[pieces.t0 == 0]) == {-1}
@@ -143,7 +152,7 @@ def test_an_eye_in_two_volumes(tmp_path: Path) -> None:
     expected = piece_airlight(scene, light, np.zeros_like(t_end), t_end)
     for plate in plates:
         expected = expected - piece_airlight(scene, light, *behind_plate(scene, plate, t_end))
-    # measured: 8.8e-7
+    # measured: 9.5e-7
     assert unlike(frame.scattering, expected) < 3e-6
 
 
@@ -157,20 +166,20 @@ def test_lights_add_up(tmp_path: Path) -> None:
         lone = replace(scene, lights=(light,))
         whole, dark = (np.zeros_like(t_end), t_end), behind_plate(lone, UPPER, t_end)
         expected = expected + piece_airlight(scene, light, *whole) - piece_airlight(scene, light, *dark)
-    # measured: 1.1e-6
-    assert unlike(frame.scattering, expected) < 4e-6
+    # measured: 5.7e-7
+    assert unlike(frame.scattering, expected) < 2e-6
 
 
 BODIES = {
     # a cube is one body, though the light meets two of its sides; turned, it stands on no edge of the picture
     "a closed body": (LIGHT, CUBE.format(0.3, 0.2, 1.4, -0.3), {}),
     "a lamp in a closed body": (point(0.3, 1.0, 0), CUBE.format(0.3, 0.2, 1.1, 0.1), {}),
-    "eye and light in one room": (point(0.3, 1.0, 0), CUBE.format(6, 0.2, 0.1, 0.3), {}),
+    "eye and light in one room": (point(0.3, 1.0, 0), CUBE.format(5, 0.2, 0.1, 0.8), {}),
     "a spot": (spot("0.3, 3.5, 0", "0, 0, 0", 24, 24), CUBE.format(0.2, 0.1, 1.4, 0.1), {}),
     "a near plane through a shadow": (
         point(-4, 0.1, 4.1),
-        CUBE.format(0.25, -1.5, 0.05, 4.6),
-        {"near": 0.7},
+        CUBE.format(0.25, -1.5, 0.05, 4.5),
+        {"near": 0.68},
     ),
     "parallel light": (SUN, BODY_OF_FOG + CUBE.format(0.4, -0.2, 0.9, 0.1), {"eye": "0.2, 0.3, 7", "inside": False}),
     "a light outside the fog": (
@@ -187,20 +196,22 @@ def test_what_is_lit_is_what_rays_find(name: str, tmp_path: Path) -> None:
     ours, truth = lit_lengths(write_scene(tmp_path, light, shapes, size=(40, 32), **settings))
     # a ray that grazes an edge or a cone is of either side
     off = np.abs(ours - truth) > 1e-4 * max(truth.max(), 1)
-    # measured: 0 to 4 of 1,280
-    assert off.sum() <= 6
+    # measured: 0 of 1,280
+    assert off.sum() <= 2
 
 
 def test_pieces_stay_in_the_cone(tmp_path: Path) -> None:
     """Models that sample a piece's middle do not ask the driver to cut it."""
-    scene = write_scene(tmp_path, spot("0.3, 3.5, 0", "0, 0, 0", 24, 24), CUBE.format(0.2, 0.1, 1.4, 0.1))
+    # half of the body is in the cone: some of its faces stand before it
+    scene = write_scene(tmp_path, spot("0.3, 3.5, 0", "0, 0, 0", 24, 24), CUBE.format(0.2, 0.1, 1.4, 0.85))
     with Renderer(scene) as renderer:
         (cut,), (own,) = (
             renderer.record(find_technique(f"shadow_faces+{model}", shadow_map=4))
             for model in ("quadrature", "riemann")
         )
-    for ours, theirs in ((own.cell, cut.cell), (own.t0, cut.t0), (own.dt, cut.dt), (own.w, cut.w)):
-        np.testing.assert_array_equal(ours, theirs)
+    rows = [np.column_stack([pieces.cell, pieces.t0, pieces.dt, pieces.w]) for pieces in (own, cut)]
+    # of pieces that begin at one place either may be recorded first
+    np.testing.assert_array_equal(*(some[np.lexsort(some.T)] for some in rows))
 
 
 def test_every_second_pixel(tmp_path: Path) -> None:
@@ -208,15 +219,12 @@ def test_every_second_pixel(tmp_path: Path) -> None:
     scene = write_scene(tmp_path, LIGHT, UPPER.xml() + LOWER.xml(), size=(46, 38))
     with Renderer(scene) as renderer:
         (fine,), (coarse,) = (renderer.record(find_technique(FACES, shadow_map=4, downsample=step)) for step in (1, 2))
-    row, column = np.divmod(coarse.cell, coarse.positions.shape[1])
-    place = np.floor(coarse.positions[row, column]).astype(int)
-    pixel = place[:, 1] * scene.camera.width + place[:, 0]
-    chosen = np.isin(fine.cell, pixel)
-    # row by row in either, and sorted on each ray: the same order
-    np.testing.assert_array_equal(fine.cell[chosen], pixel)
-    np.testing.assert_array_equal(fine.w[chosen], coarse.w)
-    # measured: equal bit by bit
-    np.testing.assert_allclose(fine.t0[chosen], coarse.t0, rtol=1e-6)
+    place = np.floor(coarse.positions).astype(int)
+    every = signed_lengths(fine)[place[..., 1] * scene.camera.width + place[..., 0]].ravel()
+    second = signed_lengths(coarse)
+    # measured: 1 of 437, along whose edge a ray passes; the others are equal
+    assert (np.abs(every - second) > 1e-5 * every.max()).sum() <= 2
+    assert np.ptp(every) > 0.1 * every.max()
 
 
 def depth_fog_airlight(scene: Scene, light: Light, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
@@ -246,7 +254,7 @@ def test_depth_fog_is_its_twin(kind: str, steps: int, tmp_path: Path) -> None:
     t_end = scene.camera.rays()[2]
     # a ray ends 16 mean free paths of the clearest channel behind the light, which is beyond the far plane here
     exact = depth_fog_airlight(scene, light, np.zeros_like(t_end), t_end)
-    # measured: 4.7e-7 with 1 step, 1.3e-6 with 200
+    # measured: 1.5e-6 with 1 step, 1.6e-6 with 200
     assert (np.abs(image - exact) / exact).max() < 5e-6
 
 
@@ -265,7 +273,7 @@ def test_depth_fog_of_parallel_light(tmp_path: Path) -> None:
     survives = np.exp(-np.multiply.outer(way_out(origin, np.broadcast_to(-sun, origin.shape)), sigma_t))
     source = light.intensity * sigma_s * scene.phase.evaluate(-direction @ sun)[..., None] * survives
     exact = depth_fog(source, sigma_t, 0.0, way_out(origin, direction)[..., None])
-    # measured: 6.1e-7
+    # measured: 6.9e-7
     assert (np.abs(image - exact) / exact).max() < 3e-6
 
 
@@ -287,5 +295,4 @@ def test_sides_of_edges() -> None:
     edges, sides = sides_of(4, np.array([[0, 1, 2], [2, 1, 3], [1, 2, 3]]))
     named = {tuple(edge[:2]): sides[edge[2] : edge[2] + edge[3]].tolist() for edge in edges.tolist()}
     # twice the triangle, and 1 more from the second vertex to the first
-    assert named == {(0, 1): [0], (0, 2): [1], (1, 2): [0, 3, 4], (1, 3): [2, 5], (2, 3): [3 + 0, 4] and named[2, 3]}
-    assert sorted(named[2, 3]) == [3, 4]
+    assert named == {(0, 1): [0], (0, 2): [1], (1, 2): [0, 3, 4], (1, 3): [2, 5], (2, 3): [3, 4]}

@@ -61,12 +61,12 @@ void visibility(Ray ray, Light light) {
             Node node = node_around(texel, level);
             vec2 crossing = crossing_of(stretch, node);
             float leave = max(min(stretch.end, min(crossing.x, crossing.y)), along);
+            float near = along < 0.0 && leave > 0.0 ? 0.0 : min(abs(along), abs(leave)), far = max(abs(along), abs(leave));
+            bool closely = is_near(seen, t + leave, approach.nearest + far);
             vec2 stored = stretch.tile == OUTSIDE ? vec2(FARTHEST) : distances_in(node.number, level, stretch.tile);
-            bool closely = t + leave > seen.near;
             if (closely && level == 0 && sees(light, seen, texel, stretch.tile, stored.x))
                 stored = vec2(seen.from_lit_side ? FARTHEST : 0.0);
             vec2 reached = reach(approach, stored);
-            float near = along < 0.0 && leave > 0.0 ? 0.0 : min(abs(along), abs(leave)), far = max(abs(along), abs(leave));
             // some of it may be lit and some dark
             if (level > 0 && (closely || (far > reached.x && near <= reached.y))) {
                 --level;

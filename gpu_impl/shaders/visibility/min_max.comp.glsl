@@ -13,8 +13,10 @@ void main() {
     vec3 side = side_of(row);
     vec2 range = column_range(light, side);
     for (int i = int(gl_LocalInvocationID.x); i < columns; i += int(gl_WorkGroupSize.x)) {
-        float middle = mix(range.x, range.y, (float(i) + 0.5) / float(columns));
-        bounds[base + columns + i] = vec2(threshold(light, side, middle));
+        // Light rays are taken in the middles of columns, but for a column that begins in the axis: what stands there
+        // hides the light from the eye, and the rays next to the axis are dark.
+        float place = float(i) + (i == 0 && range.x == 0.0 ? 0.0 : 0.5);
+        bounds[base + columns + i] = vec2(threshold(light, side, mix(range.x, range.y, place / float(columns))));
     }
     for (int level = columns / 2; level > 0; level /= 2) {
         memoryBarrierBuffer();

@@ -12,9 +12,12 @@ void visibility(Ray ray, Light light) {
     vec2 range = cone_interval(ray, light);
     float begin = range.x, w = face_volumes;
     if (face_plane.xyz != vec3(0.0)) {
-        float t = face_plane.w / dot(face_plane.xyz, ray.d) - dot(ray.o - camera_to_world[3].xyz, ray.d);
+        float from_eye = face_plane.w / dot(face_plane.xyz, ray.d);
+        // What is drawn lies before the eye. Where rounding has it behind, the ray all but runs along the face, which it
+        // meets beyond everything.
+        if (!(from_eye > 0.0)) return;
         // a face between the eye and where the ray begins counts from there on
-        if (t > begin) begin = t;
+        begin = max(0.0, from_eye - dot(ray.o - camera_to_world[3].xyz, ray.d));
         // The rasteriser knows a face's front by its corners as it has rounded them, so that of a volume's faces as many
         // are entered as are left, whatever happens at its edges.
         if (gl_FrontFacing) w = -w;

@@ -12,6 +12,7 @@ uniform int columns;   // of a row, a power of two
 
 const float PI = 3.14159265;
 const float NOWHERE = 3e38;
+const float ON_AXIS = 1e-20;   // sine of a ray along the axis, so that its cotangent is a number
 
 float distance_to_light(Light light) { return distance(light.position, camera_to_world[3].xyz); }
 
@@ -50,13 +51,13 @@ float threshold(Light light, vec3 side, float c) {
 #if DIRECTIONAL == 1
     vec3 point = eye + c * side;
     float met = nearest_surface(light, point);
-    return met >= NOWHERE ? -NOWHERE : (distance_from(light, point) - met) / c;
+    return met >= NOWHERE ? -NOWHERE : (distance_from(light, point) - met) / max(c, ON_AXIS);
 #else
     float D = distance_to_light(light);
     // a light in the eye leaves no shadow that is seen
     if (D == 0.0) return -NOWHERE;
     float met = nearest_surface(light, light.position + D * (sin(c) * side - cos(c) * epipolar_axis));
-    return met >= NOWHERE ? -NOWHERE : (D / met - cos(c)) / sin(c);
+    return met >= NOWHERE ? -NOWHERE : (D / met - cos(c)) / max(sin(c), ON_AXIS);
 #endif
 }
 
@@ -64,7 +65,7 @@ float threshold(Light light, vec3 side, float c) {
 struct Slope { float cosine; float sine; float D; };
 
 Slope slope_of(Light light, vec3 direction) {
-    float sine = max(length(cross(direction, epipolar_axis)), 1e-20);
+    float sine = max(length(cross(direction, epipolar_axis)), ON_AXIS);
     return Slope(dot(direction, epipolar_axis), sine, distance_to_light(light));
 }
 

@@ -11,26 +11,32 @@
 
 uniform usampler2D surface_material;
 
-// The receiver of the light, whether the ray comes to it from the lit side, and from where on a texel may mistake it.
-struct SeenSurface { Receiver receiver; bool from_lit_side; float near; };
+// The receiver of the light, where the ray meets it, the cosine at which it does, and whether from the lit side.
+struct SeenSurface { Receiver receiver; float t; float cosine; bool from_lit_side; };
 
 const float ROUNDING = 1e-4;   // of the distances of a map and of a plane, relative
 
 SeenSurface seen_surface(Ray ray, Light light) {
     ivec2 pixel = ivec2(position_of(ivec2(gl_FragCoord.xy)));
-    float t = texelFetch(normal_and_distance, pixel, 0).w - current_start;
+    float distance = texelFetch(normal_and_distance, pixel, 0).w;
     SeenSurface seen;
-    seen.near = 3e38;
-    if (t + current_start <= 0.0) return seen;
-    vec3 point = ray.o + t * ray.d, normal = unpacked_direction(texelFetch(surface_material, pixel, 0).a);
-    vec3 to_light = DIRECTIONAL == 1 ? -light.direction : normalize(light.position - point);
-    float cosine = dot(normal, ray.d);
+    seen.t = 3e38;
+    seen.cosine = 1.0;
+    if (distance == 0.0) return seen;
+    seen.t = distance - current_start;
+    vec3 point = ray.o + seen.t * ray.d, normal = unpacked_direction(texelFetch(surface_material, pixel, 0).a);
+    float to_plane = DIRECTIONAL == 1 ? dot(normal, light.direction) : dot(normal, point - light.position);
+    seen.cosine = abs(dot(normal, ray.d));
+    seen.from_lit_side = dot(normal, ray.d) * to_plane > 0.0;
     seen.receiver = receiver_of(light, point, normal, map_position(light, point));
-    seen.from_lit_side = cosine * dot(normal, to_light) < 0.0;
-    // Over half a texel's diagonal the plane's distance changes by 0.71 slack |n x l| / |n . l|, and the ray is that far
-    // from it where it has 0.71 slack |n x l| / |n . d| to go; twice as much leaves room for the bias.
-    seen.near = t - 1.5 * seen.receiver.slack * length(cross(normal, to_light)) / max(abs(cosine), 1e-6);
     return seen;
+}
+
+// Whether a texel may mistake the seen surface for an occluder of the ray at t, or overlook it, at most `distance` from
+// the light: over half a texel's diagonal the plane's height above the light changes by up to 0.71 texel_slope distance,
+// and the ray is (seen.t - t) cosine before it. A whole one leaves room for the bias.
+bool is_near(SeenSurface seen, float t, float distance) {
+    return (seen.t - t) * seen.cosine <= texel_slope * (DIRECTIONAL == 1 ? 1.0 : distance);
 }
 
 // Whether the texel's sample lies on the seen surface.

@@ -1,0 +1,173 @@
+"""Two controls held against the reference: `exact`, which has the shadow map's error alone, and `given`, which has none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from experiments.provenance import describe_frame, describe_reference, describe_scene
+from experiments.renderers import open_renderer
+from gpu_impl.passes.shadow_map import tile_count
+from gpu_impl.recording import Pieces
+from gpu_impl.techniques import Technique, find_technique
+from reference.agreement.comparison import Comparison, compare
+from reference.agreement.measured import exact_witness, witness
+from reference.agreement.unseen import Unseen, unseen_variance
+from reference.estimate import Reference, deterministic_reference, estimate_reference
+from reference.goal import Goal
+from scenes.loader import load
+from scenes.model import Scene
+
+EXACT, GIVEN = "exact+quadrature", "given+quadrature"
+# Texels on a side of a tile before they double: twice six tiles of 1,344 side by side are nearly as wide as OpenGL here
+# lets a texture be (16,384).
+CUBE, FLAT = 1344, 4096
+# Maps of these parts of the doubled one's texels have their borders in other places, each in its own. Doubling leaves
+# half of all borders where they are: one that lies within a quarter of a texel of a shadow's edge stays the nearest.
+PARTS = tuple(1 - 0.0187 * step for step in range(16))
+# of a pixel's lit length: whether the map's doubling still changes it
+STABLE = 1e-3
+# what is asked of stable pixels, and of how many of them; and how many pixels have to be stable
+PIXEL_LIMIT, PIXELS, SHARE = 2e-3, 0.99, 0.5
+MEAN_LIMIT = 1e-3
+# the sampled reference that `given` is held against, which shares no ray with it
+GOAL = Goal(rel_error=0.01, time_limit=120.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Stable:
+    """Pixels that the map's resolution no longer decides, among those with airlight.
+
+    Attributes
+    ----------
+    share : float     how many there are
+    within : float    how many of them are within `PIXEL_LIMIT` of the reference
+    """
+
+    share: float
+    within: float
+
+    @classmethod
+    def among(cls, change: NDArray[np.float64], error: NDArray[np.float64]) -> Stable:
+        """Of the pixels with airlight, relative change and error, (n,) each."""
+        stable = change < STABLE
+        return cls(float(stable.mean()), float((error[stable] <= PIXEL_LIMIT).mean()) if stable.any() else 1.0)
+
+    @property
+    def passes(self) -> bool:
+        """Whether enough pixels are stable, and enough of them right."""
+        return self.share >= SHARE and self.within >= PIXELS
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One scene.
+
+    Attributes
+    ----------
+    scene : str
+    shadow_map : int             texels on a side of a tile; before, half as many
+    image_mean : float           relative error of `exact`
+    one_map, many_maps : Stable  with `shadow_map` texels, and the mean of pictures over `PARTS` of them
+    given : Comparison           with the sampled reference
+    reads, milliseconds : float  of `exact` with `shadow_map` texels: a ray's reads of the map and its pyramid, and a
+                                 frame [ms]
+    told : dict                  provenance
+    """
+
+    scene: str
+    shadow_map: int
+    image_mean: float
+    one_map: Stable
+    many_maps: Stable
+    given: Comparison
+    reads: float
+    milliseconds: float
+    told: dict[str, str]
+
+    @property
+    def unbiased(self) -> bool:
+        """Whether the image's mean is right."""
+        return abs(self.image_mean) <= MEAN_LIMIT
+
+
+def study(
+    scenes: Sequence[str], size: tuple[int, int], shadow_map: int | None, tell: Callable[[str], None]
+) -> Iterator[Case]:
+    """Draw each scene with both controls.
+
+    Parameters
+    ----------
+    shadow_map : int or None    texels before they double, in place of `CUBE` and `FLAT`
+    tell : callable             told what is being done
+
+    Raises
+    ------
+    InputError
+        A scene cannot be used, or its map is wider than OpenGL allows; there is no usable LLVM for the references.
+    """
+    for scene in [load(name, size=size) for name in scenes]:
+        tell(f"{scene.name}: references")
+        truth, sampled = deterministic_reference(scene), estimate_reference(scene, GOAL)
+        tell(f"{scene.name}: exact and given")
+        yield _case(scene, truth, sampled, shadow_map or doubled_map(scene))
+
+
+def doubled_map(scene: Scene) -> int:
+    """Texels of a tile before they double."""
+    return CUBE if any(tile_count(light) > 1 for light in scene.lights) else FLAT
+
+
+def lit_length(lights: Sequence[Pieces]) -> NDArray[np.float64]:
+    """How much of each cell's ray is lit, all lights added up, (h * w,) [scene unit]."""
+    found = [np.bincount(one.cell, weights=one.dt, minlength=one.start.size) for one in lights]
+    return np.sum(found, axis=0)
+
+
+def against_reference(scene: Scene, sampled: Reference, picture: NDArray[np.floating], name: str) -> Comparison:
+    """Compare airlight (H, W, 3) with a sampled reference, pixel by pixel, by tiles and by the image's mean."""
+    estimate = sampled.estimate
+    unseen = unseen_variance(Unseen(scene).equiangular, estimate.samples * estimate.passes)
+    return compare(exact_witness(name, picture.astype(np.float64)), witness("reference", estimate, unseen))
+
+
+def _case(scene: Scene, truth: Reference, sampled: Reference, before: int) -> Case:
+    expected = truth.scattering.astype(np.float64)
+    bright = expected.max(axis=-1)
+    lit = bright > 0
+
+    def error(picture: NDArray[np.floating]) -> NDArray[np.float64]:
+        return np.abs(picture - expected).max(axis=-1)[lit] / bright[lit]
+
+    coarse, fine = (find_technique(EXACT, shadow_map=size) for size in (before, 2 * before))
+    with open_renderer(scene) as renderer:
+        frame, given = (renderer.render(technique) for technique in (fine, find_technique(GIVEN)))
+        lengths = [lit_length(renderer.record(technique))[lit.ravel()] for technique in (coarse, fine)]
+        reads = float(renderer.counts(fine)["shadow_map_reads"].mean())
+        milliseconds = renderer.milliseconds(fine, frames=3)
+    longer = np.maximum(*lengths)
+    # a ray that both find dark does not change
+    change = np.abs(lengths[1] - lengths[0]) / np.where(longer > 0, longer, 1.0)
+    return Case(
+        scene.name,
+        2 * before,
+        frame.scattering.mean(dtype=np.float64) / expected.mean() - 1,
+        Stable.among(change, error(frame.scattering)),
+        Stable.among(change, error(_mean_over_maps(scene, fine))),
+        against_reference(scene, sampled, given.scattering, GIVEN),
+        reads,
+        milliseconds,
+        {**describe_scene(scene), **describe_frame(frame), **describe_reference(sampled)},
+    )
+
+
+def _mean_over_maps(scene: Scene, technique: Technique) -> NDArray[np.float64]:
+    """Airlight with maps of `PARTS` of the technique's texels, one after the other: together they would fill memory."""
+    total = np.zeros((scene.camera.height, scene.camera.width, 3))
+    for part in PARTS:
+        with open_renderer(scene) as renderer:
+            total += renderer.render(replace(technique, shadow_map=round(part * technique.shadow_map))).scattering
+    return total / len(PARTS)

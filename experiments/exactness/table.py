@@ -1,0 +1,63 @@
+"""The table of `airlight exactness`, in the terminal and on its page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.table import Table
+
+from experiments.console import plain_table
+from experiments.exactness.study import MEAN_LIMIT, PIXEL_LIMIT, PIXELS, SHARE, STABLE, Case
+
+HEADINGS = ("scene", "map", "image mean", "stable", "one map", "16 maps", "given", "reads", "ms")
+MEANING = (
+    f"map: texels on a side of a tile, twice as many as before; image mean: error of exact x quadrature, at most "
+    f"{MEAN_LIMIT:.1%}; stable: pixels with airlight whose lit length that doubling changes by less than {STABLE:.1%}, at "
+    f"least {SHARE:.0%}; one map, 16 maps: how many of those are within {PIXEL_LIMIT:.1%} of the reference, with that map "
+    f"and in the mean over sixteen sizes of it, at least {PIXELS:.0%}; given: the largest score of a pixel of given x "
+    "quadrature against the sampled reference, over the critical one; reads: of the map and its pyramid, a ray"
+)
+
+
+def cells(case: Case) -> tuple[str, ...]:
+    """Texts of one case's row."""
+    pixels = case.given.verdicts[0]
+    return (
+        case.scene,
+        str(case.shadow_map),
+        f"{case.image_mean:+.4%}",
+        f"{case.one_map.share:.1%}",
+        f"{case.one_map.within:.2%}",
+        f"{case.many_maps.within:.2%}",
+        f"{abs(pixels.largest):.2f} / {pixels.critical:.2f}",
+        f"{case.reads:.0f}",
+        f"{case.milliseconds:.0f}",
+    )
+
+
+def exactness_table(cases: Sequence[Case]) -> Table:
+    """A line a scene."""
+    table = plain_table("exact x quadrature and given x quadrature against the reference")
+    for number, heading in enumerate(HEADINGS):
+        table.add_column(heading, justify="right" if number else "left", no_wrap=True)
+    for case in cases:
+        table.add_row(*cells(case))
+    table.caption = MEANING
+    return table
+
+
+def verdict(cases: Sequence[Case]) -> str:
+    """What holds for how many scenes, and which do not keep it."""
+    return "; ".join(
+        (
+            _held(cases, "an image mean within the limit", [case.unbiased for case in cases]),
+            _held(cases, "stable pixels that are right with one map", [case.one_map.passes for case in cases]),
+            _held(cases, "stable pixels that are right over 16 maps", [case.many_maps.passes for case in cases]),
+            _held(cases, "given intervals within the reference's noise", [case.given.agrees for case in cases]),
+        )
+    )
+
+
+def _held(cases: Sequence[Case], what: str, held: Sequence[bool]) -> str:
+    missed = [case.scene for case, one in zip(cases, held, strict=True) if not one]
+    return f"{what}: {sum(held)} of {len(held)}{', not ' + ', '.join(missed) if missed else ''}"

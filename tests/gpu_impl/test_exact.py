@@ -1,0 +1,262 @@
+"""The visibility `exact`: against a float64 brute force over all texels, against shadows in closed form, and spoilt."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from map_walk import FILE, ROW, Walk, apart, point_light, reported, spot_light, sun
+from oracles import SphereScene, whole_ray_airlight
+from scene_files import point, write_scene
+from shadow_volumes import SHADOWS, plate, shadowed_airlight
+from texel_intervals import texel_intervals
+
+from gpu_impl.context import shared_context
+from gpu_impl.device import Device
+from gpu_impl.renderer import Renderer
+from gpu_impl.shader_source import SHADERS
+from gpu_impl.techniques import find_technique
+from scenes.loader import load
+
+LIGHTS = {"point": point_light(), "spot": spot_light(), "sun": sun()}
+EXACT = "exact+quadrature"
+NOTHING = 3e38
+LINE = "visibility/parts/map_line.glsl"
+PYRAMID = "visibility/parts/shadow_pyramid.glsl"
+# what breaks the traversal, and where
+FAULTS = {
+    "a border too far": (LINE, "node.last.x + 1 : node.first.x,", "node.last.x + 2 : node.first.x,"),
+    "the tile's mirror image": (LINE, "^ (stretch.side & 1)", "^ (1 - (stretch.side & 1))"),
+    "another axis": (LINE, "int[6](4, 5, 0, 1, 1, 0)", "int[6](5, 4, 0, 1, 1, 0)"),
+    "half a texel": (LINE, "floor((0.5 + 0.5 * position.xy", "floor((0.51 + 0.5 * position.xy"),
+    "a last node without its rest": (PYRAMID, "number.x + 1 < size ? last.x : tile_size - 1", "last.x"),
+    "the other bound": (FILE, "far > reached.x && near <= reached.y", "far > reached.y && near <= reached.y"),
+    "dark for lit": (FILE, "near <= reached.y", "near <= reached.x"),
+    "one side only": (FILE, "max(along, -reached.x)", "along"),
+    "the last piece lost": (FILE, "if (is_last) whole = held;", ""),
+    "pieces bridged": (FILE, "is_whole = part.x > held.y;", "is_whole = part.x > held.y + 0.05;"),
+    "a node skipped": (FILE, "node.last.y + 1 : node.first.y - 1", "node.last.y + 2 : node.first.y - 1"),
+}
+
+
+def noise(size: int, tiles: int, seed: int) -> np.ndarray:
+    """Distances in blocks, which a pyramid can skip, with nearer texels and holes strewn in."""
+    random = np.random.default_rng(seed)
+    blocks = random.uniform(0.4, 3, (8, 8 * tiles))
+    texels = blocks[np.arange(size) * 8 // size][:, np.arange(tiles * size) * 8 // size]
+    strewn = random.random(texels.shape)
+    texels = np.where(strewn < 0.15, random.uniform(0.3, 3, texels.shape), texels)
+    return np.where(strewn > 0.93, NOTHING, texels).astype(np.float32)
+
+
+def random_walk(kind: str, size: int, rays: int) -> Walk:
+    """Rays from anywhere to anywhere."""
+    random = np.random.default_rng(size)
+    direction = random.normal(size=(rays, 3))
+    if kind == "spot":
+        direction = LIGHTS[kind].position + [0.6, 0, 0.8] + 0.4 * direction
+        origin = random.uniform(-2, 2, (rays, 3))
+        direction -= origin
+    else:
+        origin = random.uniform(-2, 2, (rays, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    tiles = 6 if kind == "point" else 1
+    ends = random.uniform(0.5, 6, rays)
+    parts = (part.astype(np.float32) for part in (origin, direction, ends))
+    return Walk(*parts, LIGHTS[kind], noise(size, tiles, size))
+
+
+def expected(walk: Walk) -> list[list[tuple[float, float]]]:
+    device = Device(shared_context())
+    shadow_map = walk.map_of(device)
+    found = []
+    for origin, direction, end in zip(walk.origin, walk.direction.astype(float), walk.end, strict=True):
+        way = direction / np.linalg.norm(direction)
+        found.append(
+            texel_intervals(shadow_map, walk.stored.astype(float), walk.light, origin.astype(float), way, float(end))
+        )
+    shadow_map.texture.release()
+    device.release()
+    return found
+
+
+def off(walk: Walk, **settings) -> np.ndarray:
+    """How much of each ray is told wrongly [scene unit]."""
+    found, _ = reported(walk, **settings)
+    return np.array([apart(*pair) for pair in zip(found, expected(walk), strict=True)])
+
+
+@pytest.mark.parametrize(
+    ("kind", "size", "rays"),
+    [*itertools.product(LIGHTS, (1, 3, 17, 64), (2 * ROW,)), ("point", 1000, 8), ("sun", 1000, 16)],
+)
+def test_every_texel_crossing_is_told(kind: str, size: int, rays: int) -> None:
+    walk = random_walk(kind, size, rays)
+    found, _ = reported(walk)
+    truth = expected(walk)
+    wrong = [apart(*pair) for pair in zip(found, truth, strict=True)]
+    assert sum(map(len, truth)) > 4
+    # none is lost, none invented, neighbours are one
+    assert [len(one) for one in found] == [len(one) for one in truth]
+    # float32 on rays of up to 6 units: measured 2.8e-5 (1,000 texels, hundreds of ends a ray)
+    assert max(wrong) < 1e-4
+    assert np.median(wrong) < 3e-5
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_the_brute_force_notices(fault: str) -> None:
+    file, right, wrong = FAULTS[fault]
+    text = (SHADERS / file).read_text()
+    assert right in text
+    walk = random_walk("point", 17, ROW)
+    # measured: 2.8e-6 as it is
+    assert off(walk, changed={file: text.replace(right, wrong)}).max() > 0.01
+
+
+def special_rays() -> tuple[np.ndarray, np.ndarray]:
+    """Through the light, from it, in the planes that part a cube's faces, through its corners, along texel borders."""
+    ways = np.array([way for way in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    beside = [way * t for way in ways for t in (0.0, 0.25, -1.5)]
+    pairs = [(origin, way) for origin in beside for way in ways]
+    return np.array([pair[0] for pair in pairs]), np.array([pair[1] for pair in pairs])
+
+
+@pytest.mark.parametrize("size", [1, 2, 17, 64])
+def test_edges_and_corners_of_a_cube_lose_nothing(size: int) -> None:
+    """The light sees a ball around it: any line through any edge or corner has one piece of it, or none."""
+    aside, direction = special_rays()
+    light, radius, end = LIGHTS["point"], 1.25, 4.0
+    # float32 keeps these sums on the planes that are meant
+    walk = Walk(
+        (aside + np.float32(light.position)).astype(np.float32),
+        direction.astype(np.float32),
+        np.full(len(aside), end, np.float32),
+        light,
+        np.full((size, 6 * size), radius, np.float32),
+    )
+    found, _ = reported(walk)
+    t_h = -(aside * direction).sum(-1)
+    square = radius**2 - (aside**2).sum(-1) + t_h**2
+    assert (np.abs(square) > 1e-3).all()
+    half = np.sqrt(np.maximum(square, 0))
+    begin, stop = np.maximum(t_h - half, 0), np.minimum(t_h + half, end)
+    lit = (square > 0) & (stop > begin)
+    # some begin or end on the ball itself, where either answer is right
+    clear = ~lit | (stop - begin > 1e-4)
+    assert (lit & clear).sum() > 1000
+    for ray in np.flatnonzero(clear):
+        assert len(found[ray]) <= 1 + (not lit[ray])
+        # measured 6e-7
+        assert apart(found[ray], [(begin[ray], stop[ray])] if lit[ray] else []) < 4e-6
+
+
+def test_a_buffer_tells_the_same() -> None:
+    for kind in LIGHTS:
+        walk = random_walk(kind, 17, ROW)
+        (texture, reads), (buffer, same_reads) = reported(walk), reported(walk, storage="buffer")
+        assert (reads == same_reads).all()
+        assert all((a == b).all() for a, b in zip(texture, buffer, strict=True))
+
+
+def test_a_pyramid_spares_reads() -> None:
+    """A ray in the open meets the top of each tile; one beside blocks reads fewer texels than it crosses."""
+    walk = random_walk("point", 512, ROW)
+    walk.stored[:] = NOTHING
+    _, reads = reported(walk)
+    # a ray crosses five faces of a cube at most
+    assert reads.max() <= 5
+    with Renderer(load("sphere", size=(64, 64))) as renderer:
+        read = renderer.counts(find_technique(EXACT, shadow_map=1024))["shadow_map_reads"]
+    # measured 36.0 in the mean and 118 at most, of more than 500 texels
+    assert read.mean() < 60
+    assert read.max() < 250
+
+
+def error(image: np.ndarray, truth: np.ndarray) -> np.ndarray:
+    """Relative to the pixel, or to a thousandth of the mean where it is darker."""
+    return np.abs(image - truth).max(-1) / np.maximum(truth.max(-1), 1e-3 * truth.mean())
+
+
+@pytest.mark.parametrize("name", SHADOWS)
+def test_it_converges_to_shadows_in_closed_form(name: str) -> None:
+    """The eye in shadow, light behind the eye, grazing edges, two pieces a ray."""
+    scene = load(name, size=(64, 64))
+    errors, means = [], []
+    with Renderer(scene) as renderer:
+        # how near an edge lies to a border of texels is luck, one for all pixels where it is parallel to them
+        for sizes in ((225, 256, 287), (1800, 2048, 2296)):
+            frames = [renderer.render(find_technique(EXACT, shadow_map=size)) for size in sizes]
+            truth = shadowed_airlight(scene, frames[0].depth.astype(np.float64))
+            errors.append(np.mean([error(frame.scattering, truth) for frame in frames]))
+            means.append(np.mean([frame.scattering.mean(dtype=float) for frame in frames]) / truth.mean() - 1)
+    print(name, errors, means)
+    # an eighth of the texels' width: measured RATIOS
+    assert errors[1] < 0.25 * errors[0]
+    assert abs(means[1]) < 1e-3
+
+
+def test_the_exact_shadow_of_a_sphere() -> None:
+    scene = load("sphere", size=(64, 64))
+    truth = SphereScene(scene).scattering()
+    with Renderer(scene) as renderer:
+        errors = [
+            np.percentile(error(renderer.render(find_technique(EXACT, shadow_map=size)).scattering, truth), 95)
+            for size in (256, 512, 1024)
+        ]
+    for coarse, fine in itertools.pairwise(errors):
+        assert fine < 0.7 * coarse
+    # measured 4.5e-4; the march of 256 samples, 3.1e-3
+    assert errors[-1] < 1e-3
+
+
+@pytest.mark.parametrize("size", [16, 64, 256])
+def test_a_floor_neither_shades_what_lies_before_it_nor_lets_light_through(tmp_path, size: int) -> None:
+    """Rays end on a floor whose texels are wider than the rays' last part is high, on either side of it."""
+    floor = (
+        "<shape type='rectangle'><transform name='to_world'><scale value='60'/><rotate x='1' angle='-90'/>"
+        "<translate y='{}'/></transform></shape>"
+    )
+    technique = find_technique(EXACT, shadow_map=size)
+    above = write_scene(tmp_path, point(0.3, 2.6, 0), floor.format(-1), size=(48, 48))
+    with Renderer(above) as renderer:
+        frame = renderer.render(technique)
+        (pieces,) = renderer.record(technique)
+    depth = frame.depth.ravel()
+    length = np.bincount(pieces.cell, weights=pieces.dt, minlength=depth.size)
+    # at the far plane a ray may end above the floor, in what the map cannot tell from it
+    on_floor = depth < 24
+    assert on_floor.mean() > 0.3
+    assert (np.bincount(pieces.cell, minlength=depth.size)[on_floor] == 1).all()
+    # all of the ray; measured 2.2e-7 of it
+    assert np.abs(length / depth - 1)[on_floor].max() < 1e-6
+    below = write_scene(tmp_path, point(0.3, 2.6, 0), floor.format(1.5), size=(48, 48))
+    with Renderer(below) as renderer:
+        frame = renderer.render(technique)
+    ends_on_it = frame.depth < 24
+    assert ends_on_it.mean() > 0.2
+    assert (frame.scattering[ends_on_it] == 0).all()
+
+
+def test_without_an_occluder_a_ray_is_one_piece(tmp_path) -> None:
+    scene = write_scene(tmp_path, point(0.3, 2.6, 0), size=(16, 16))
+    with Renderer(scene) as renderer:
+        frame = renderer.render(find_technique(EXACT, shadow_map=64))
+    assert (frame.lit_intervals == 1).all()
+    # measured 3e-7
+    assert error(frame.scattering, whole_ray_airlight(scene)).max() < 2e-6
+
+
+def test_the_plates_of_the_slit_stay_dark_from_below() -> None:
+    """What leaks through a slanted surface within half a texel is the map's fault, not the light's."""
+    scene = load("slit", size=(64, 64))
+    with Renderer(scene) as renderer:
+        frame = renderer.render(find_technique(EXACT, shadow_map=512))
+    depth = frame.depth.astype(np.float64)
+    origin, direction, _ = scene.camera.rays()
+    end = origin + depth[..., None] * direction
+    truth = shadowed_airlight(scene, depth).max(-1)
+    dark = (np.abs(end[..., 1] - plate(0, 1, 2.2)[0][1]) < 1e-3) & (truth < 1e-6 * truth.mean())
+    assert dark.sum() > 300
+    assert (frame.scattering[dark].max(-1) == 0).mean() > 0.99
