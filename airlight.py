@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 from scenes.errors import InputError
 
 if TYPE_CHECKING:
+    from experiments.attribution.measurement import Attribution
     from experiments.compare import Layered
     from experiments.metrics import Image, Metrics
     from experiments.pictures import Picture
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "InputError",
+    "attribute",
     "compare",
     "lit_intervals",
     "load",
@@ -200,6 +202,33 @@ def compare(
     from experiments.compare import compare as compare_results
 
     return compare_results(test, truth, standard_error, layer, Path(sheet) if sheet else None)
+
+
+def attribute(scene: Scene, truth: Reference, technique: str = "Weng2010", **settings: Any) -> Attribution:
+    """Split the error of a technique's airlight over airlight model, visibility, shadow map, lattice and float32.
+
+    Parameters
+    ----------
+    truth : what `reference` returned for the scene
+    technique, settings : see `render`
+
+    Returns
+    -------
+    Attribution
+        Its `split` has the `whole` error, the Shapley value of each of the `parts`, and what `remains`; each with a
+        `value`, a `standard_error` and a `signed` error per pixel.
+
+    Raises
+    ------
+    InputError
+        As `render`; or an exact part cannot take the scene.
+    """
+    from experiments.attribution.measurement import attribute as split_error
+    from experiments.attribution.pictures import Pictures
+
+    chosen = _technique(technique, settings)
+    with Pictures(scene) as pictures:
+        return split_error(pictures, chosen, truth)
 
 
 def save(path: str | Path, scene: Scene, result: Frame | Reference, truth: Reference | None = None) -> None:

@@ -15,6 +15,7 @@ from experiments.attribute_cli import attribute
 from experiments.benchmark_cli import benchmark_app
 from experiments.cache_cli import cache_app
 from experiments.compare_cli import compare
+from experiments.exactness_cli import exactness
 from experiments.figures_cli import figures
 from experiments.gate_cli import gate
 from experiments.mathematics_cli import atlas, audit, quadrature, spectra
@@ -176,6 +177,7 @@ for command in (
     page,
     gate,
     accuracy,
+    exactness,
     agree,
     audit,
     atlas,

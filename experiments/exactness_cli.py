@@ -18,7 +18,7 @@ def exactness(
     size: Annotated[tuple[int, int], typer.Option("--size", metavar="W H", help="Image size in pixels.")] = (128, 128),
     shadow_map: Annotated[
         int | None,
-        typer.Option(help="Texels on a side of a tile before they double.", show_default="1344 of a cube, 4096"),
+        typer.Option(help="Texels on a side of a tile before they double.", show_default="1344 of a cube, 8192"),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the page.")] = None,
 ) -> None:
@@ -44,7 +44,7 @@ def exactness(
         for case in study(scenes, size, shadow_map, status.update):
             cases.append(case)
             if out:
-                write_page(out, cases, scenes, size)
+                write_page(out, cases, scenes, size, shadow_map)
     console.print(exactness_table(cases))
     say(f"{verdict(cases)}.")
     if out:

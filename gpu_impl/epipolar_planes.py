@@ -27,9 +27,9 @@ INSET = 0.49
 def border_pixels(camera: Camera, step: int) -> int:
     """How many planes serve an image: one for every `step`-th pixel of its border, and two at least.
 
-    A plane leaves the image through its border (Engelhardt and Dachsbacher 2010, section 3). Planes are evenly spread
-    in angle, which puts neighbours furthest apart in the corner furthest from the epipole: 1.11 steps in a square image
-    with the epipole in its middle.
+    Engelhardt and Dachsbacher 2010 end their slices in evenly spread pixels of the border. Planes are evenly spread in
+    angle instead, and neighbours are furthest apart in the corner that is furthest from the epipole: in a narrow view
+    of a square image by pi / 2^1.5 = 1.11 steps with the epipole in its middle, by twice that with it in a corner.
     """
     return max(2, -(-2 * (camera.width + camera.height) // step))
 

@@ -50,7 +50,7 @@ class Recording:
     """
 
     def __init__(self, context: Any, room: int, cells_in_row: int) -> None:
-        self._cells_in_row = cells_in_row
+        self._context, self._cells_in_row = context, cells_in_row
         self._count = context.buffer(bytes(4))
         self._pieces = context.buffer(reserve=4 * WORDS * max(room, 1))
 
@@ -60,6 +60,13 @@ class Recording:
         self._pieces.bind_to_storage_buffer(PIECES)
         set_uniforms(program, {"recorded_row": self._cells_in_row})
 
+    @property
+    def reported(self) -> int:
+        """How many pieces there were, with room or without."""
+        # a driver may not know that the shader wrote here
+        self._context.finish()
+        return int(np.frombuffer(self._count.read(), np.uint32)[0])
+
     def read(self, rays: NDArray[np.float32]) -> Pieces:
         """Sort what was recorded.
 
@@ -67,10 +74,9 @@ class Recording:
         ----------
         rays : (h, w, 4)    what shaders/lattice_rays.frag.glsl draws
         """
-        (count,) = np.frombuffer(self._count.read(), np.uint32)
-        words = np.frombuffer(self._pieces.read(4 * WORDS * int(count)), np.uint32).reshape(-1, WORDS)
+        words = np.frombuffer(self._pieces.read(4 * WORDS * self.reported), np.uint32).reshape(-1, WORDS)
         cell = words[:, 0].astype(np.int64)
-        t0, dt, w = (np.ascontiguousarray(words[:, i]).view(np.float32) for i in (1, 2, 3))
+        t0, dt, w = np.ascontiguousarray(words[:, 1:].T).view(np.float32)
         order = np.lexsort([t0, cell])
         return Pieces(rays[..., :2], rays[..., 2], cell[order], t0[order], dt[order], w[order], rays[..., 3])
 

@@ -160,13 +160,13 @@ class Renderer:
         """
         with self._drawing(technique):
             view, airlight, counts = self.passes.see(technique), *self._lattice_textures(technique, 2)
-            found = 0
+            of_lights = []
             for number in range(len(self.passes.lights)):
                 self.passes.scatter_light(airlight, technique, view, number, counts=counts, first=True)
-                found = found + read(counts)
+                of_lights.append(read(counts))
             self.device.give_back(airlight, counts)
             view.give_back(self.device)
-        return {name: found[..., channel] for channel, name in enumerate(COUNTERS)}
+        return dict(zip(COUNTERS, np.moveaxis(np.sum(of_lights, axis=0), -1, 0), strict=True))
 
     def record(self, technique: Technique) -> list[Pieces]:
         """Find what the technique calls lit, for each light: the pieces that it hands to its airlight model.
@@ -184,10 +184,12 @@ class Renderer:
         with self._drawing(technique):
             view, (airlight,) = self.passes.see(technique), self._lattice_textures(technique, 1)
             for number in range(len(self.passes.lights)):
-                # how many there are is known from a frame that counts them
-                self.passes.scatter_light(airlight, technique, view, number, first=True)
-                reported = read(airlight)[..., 3].sum(dtype=np.float64)
-                recording = Recording(self.device.context, int(reported), airlight.width)
+                # How many there are is known from a first pass, by the same program: another build's fused products
+                # may tear a piece in two.
+                counting = Recording(self.device.context, 0, airlight.width)
+                self.passes.scatter_light(airlight, technique, view, number, recording=counting, first=True)
+                recording = Recording(self.device.context, counting.reported, airlight.width)
+                counting.release()
                 self.passes.scatter_light(airlight, technique, view, number, recording=recording, first=True)
                 found.append(recording.read(self.passes.rays(technique, view, number)))
                 recording.release()

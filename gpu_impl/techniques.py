@@ -94,8 +94,8 @@ class Technique:
             )
         if self.shadow_source == "rays" and not VISIBILITIES[self.visibility].asks_points:
             raise InputError(
-                f"The visibility {self.visibility} does not ask about points, so that rays cannot answer in place of the "
-                "shadow map: leave shadow_source out, or use the visibility given."
+                f"The visibility {self.visibility} does not ask about points, so that rays cannot answer in place of "
+                "the shadow map: leave shadow_source out, or use the visibility given."
             )
 
     @property

@@ -17,8 +17,12 @@ from gpu_impl.techniques import Technique
 from reference.estimate import Reference
 from scenes.errors import InputError
 
-# told what is about to be replaced, and in how many pictures
+# told what is about to be replaced, and of how many pictures it is one
 Tell = Callable[[Coalition, int], None]
+
+
+def nobody(coalition: Coalition, pictures: int) -> None:
+    """Tell nobody."""
 
 
 @dataclass(frozen=True)
@@ -51,19 +55,24 @@ class Attribution:
         return float(np.copysign(np.sqrt(abs(share.value)), share.value) / np.mean(self.reference))
 
 
-def attribute(pictures: Pictures, technique: Technique, reference: Reference, tell: Tell) -> Attribution:
+def attribute(pictures: Pictures, technique: Technique, reference: Reference, tell: Tell = nobody) -> Attribution:
     """Draw all coalitions of the technique's parts and split its error.
 
     Parameters
     ----------
     pictures : Pictures      of the scene
     reference : Reference    of the same scene
+    tell : callable          for a progress bar
 
     Raises
     ------
     InputError
-        The technique cannot draw the scene, or it cannot with some of its parts replaced.
+        The reference is of another scene, or the technique cannot draw the scene, or not with some parts replaced.
     """
+    if reference.scene_digest != pictures.scene.digest:
+        raise InputError(
+            "The reference is of another scene, or of other parameters; make it from the scene that is drawn."
+        )
     parts = parts_of(technique, pictures.scene)
     chosen = coalitions(parts.there)
     drawn = {}

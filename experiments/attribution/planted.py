@@ -109,7 +109,7 @@ def try_planted(planted: Planted) -> Outcome:
     reference = deterministic_reference(scene)
     with flipped_model(), Pictures(scene) as pictures:
         before, after = (
-            attribute(pictures, find_technique(name, **settings), reference, lambda coalition, of: None)
+            attribute(pictures, find_technique(name, **settings), reference)
             for name, settings in (
                 (planted.technique, planted.settings),
                 (planted.spoilt, planted.settings | planted.changes),

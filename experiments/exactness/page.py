@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-from experiments.exactness.study import GOAL, Case
+from experiments.exactness.study import GOAL, PARTS, Case
 from experiments.exactness.table import HEADINGS, MEANING, cells, verdict
 from experiments.markdown import table
 from experiments.pages import made_by
@@ -17,9 +17,9 @@ PAGE = """# {title}
 
 {made} Drawn on {renderer}.
 
-Visibility `exact` reads every texel of the shadow map that a ray crosses, so that what is left is the map's; `given` takes
-the reference's own lit intervals, so that nothing of visibility is. Both with the model `quadrature`, at {size}, every
-pixel evaluated: {verdict}.
+Visibility `exact` reads every texel of the shadow map that a ray crosses, so that what is left is the map's; `given`
+takes the reference's own lit intervals, so that nothing of visibility is. Both with the model `quadrature`, at {size},
+every pixel evaluated: {verdict}.
 
 {table}
 
@@ -29,12 +29,14 @@ image's mean, of which each may fail once in 10,000 times by chance.
 
 Doubling a map leaves half of the borders between its texels where they are: a shadow's edge within a quarter of a texel
 of one is told in the same wrong place twice. Where edges are parallel to texels that holds for whole surfaces of them,
-and such pixels count as stable. Maps of sixteen sizes have their borders in sixteen places, and their mean shows how much
-of the error is that.
+and such pixels count as stable. Maps of {maps} sizes, from {smallest:.0%} of the largest up, have their borders in as
+many places, and the mean of their pictures shows how much of the error is that.
 """
 
 
-def write_page(folder: Path, cases: Sequence[Case], scenes: Sequence[str], size: tuple[int, int]) -> None:
+def write_page(
+    folder: Path, cases: Sequence[Case], scenes: Sequence[str], size: tuple[int, int], shadow_map: int | None
+) -> None:
     """Write README.md over the one that is there.
 
     Raises
@@ -42,7 +44,8 @@ def write_page(folder: Path, cases: Sequence[Case], scenes: Sequence[str], size:
     InputError
         The file cannot be written.
     """
-    command = shlex.join(["airlight", "exactness", *scenes, "--size", *map(str, size), "--out", str(folder)])
+    asked = [] if shadow_map is None else ["--shadow-map", str(shadow_map)]
+    command = shlex.join(["airlight", "exactness", *scenes, "--size", *map(str, size), *asked, "--out", str(folder)])
     text = PAGE.format(
         title=TITLE,
         made=made_by(command, "mitsuba", "moderngl", "numpy"),
@@ -52,6 +55,8 @@ def write_page(folder: Path, cases: Sequence[Case], scenes: Sequence[str], size:
         table=table(HEADINGS, [cells(case) for case in cases]),
         meaning=MEANING,
         rel_error=GOAL.rel_error,
+        maps=len(PARTS),
+        smallest=min(PARTS),
     )
     with replacing(folder / "README.md") as beside:
         beside.write_text(text, encoding="utf-8")

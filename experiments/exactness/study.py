@@ -1,4 +1,4 @@
-"""Two controls held against the reference: `exact`, which has the shadow map's error alone, and `given`, which has none."""
+"""Two controls against the reference: `exact` has the shadow map's error alone, `given` none."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from scenes.loader import load
 from scenes.model import Scene
 
 EXACT, GIVEN = "exact+quadrature", "given+quadrature"
-# Texels on a side of a tile before they double: twice six tiles of 1,344 side by side are nearly as wide as OpenGL here
-# lets a texture be (16,384).
-CUBE, FLAT = 1344, 4096
+# Texels on a side of a tile before they double: twice six tiles of 1,344 side by side, or one of 8,192, are as wide as
+# llvmpipe lets a texture be, or nearly (16,384).
+CUBE, FLAT = 1344, 8192
 # Maps of these parts of the doubled one's texels have their borders in other places, each in its own. Doubling leaves
 # half of all borders where they are: one that lies within a quarter of a texel of a shadow's edge stays the nearest.
 PARTS = tuple(1 - 0.0187 * step for step in range(16))

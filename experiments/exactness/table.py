@@ -7,15 +7,16 @@ from collections.abc import Sequence
 from rich.table import Table
 
 from experiments.console import plain_table
-from experiments.exactness.study import MEAN_LIMIT, PIXEL_LIMIT, PIXELS, SHARE, STABLE, Case
+from experiments.exactness.study import MEAN_LIMIT, PARTS, PIXEL_LIMIT, PIXELS, SHARE, STABLE, Case
 
-HEADINGS = ("scene", "map", "image mean", "stable", "one map", "16 maps", "given", "reads", "ms")
+HEADINGS = ("scene", "map", "image mean", "stable", "one map", f"{len(PARTS)} maps", "given", "reads", "ms")
 MEANING = (
-    f"map: texels on a side of a tile, twice as many as before; image mean: error of exact x quadrature, at most "
-    f"{MEAN_LIMIT:.1%}; stable: pixels with airlight whose lit length that doubling changes by less than {STABLE:.1%}, at "
-    f"least {SHARE:.0%}; one map, 16 maps: how many of those are within {PIXEL_LIMIT:.1%} of the reference, with that map "
-    f"and in the mean over sixteen sizes of it, at least {PIXELS:.0%}; given: the largest score of a pixel of given x "
-    "quadrature against the sampled reference, over the critical one; reads: of the map and its pyramid, a ray"
+    "map: texels on a side of a tile, twice as many as before; image mean: error of exact x quadrature, at most "
+    f"{MEAN_LIMIT:.1%}; stable: pixels with airlight whose lit length that doubling changes by less than "
+    f"{STABLE:.1%}, at least {SHARE:.0%}; one map, {len(PARTS)} maps: how many of those are within {PIXEL_LIMIT:.1%} "
+    f"of the reference, with that map and in the mean over so many sizes of it, at least {PIXELS:.0%}; given: the "
+    "largest score of a pixel of given x quadrature against the sampled reference, over the critical one; reads: of "
+    "the map and its pyramid, a ray; ms: a frame"
 )
 
 
@@ -48,14 +49,13 @@ def exactness_table(cases: Sequence[Case]) -> Table:
 
 def verdict(cases: Sequence[Case]) -> str:
     """What holds for how many scenes, and which do not keep it."""
-    return "; ".join(
-        (
-            _held(cases, "an image mean within the limit", [case.unbiased for case in cases]),
-            _held(cases, "stable pixels that are right with one map", [case.one_map.passes for case in cases]),
-            _held(cases, "stable pixels that are right over 16 maps", [case.many_maps.passes for case in cases]),
-            _held(cases, "given intervals within the reference's noise", [case.given.agrees for case in cases]),
-        )
-    )
+    held = {
+        "an image mean within the limit": [case.unbiased for case in cases],
+        "stable pixels that are right with one map": [case.one_map.passes for case in cases],
+        f"stable pixels that are right over {len(PARTS)} maps": [case.many_maps.passes for case in cases],
+        "given intervals within the reference's noise": [case.given.agrees for case in cases],
+    }
+    return "; ".join(_held(cases, what, found) for what, found in held.items())
 
 
 def _held(cases: Sequence[Case], what: str, held: Sequence[bool]) -> str:

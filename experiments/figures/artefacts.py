@@ -82,7 +82,7 @@ def slices(stage: Stage) -> Drawn:
     show(axes[0, 1], truth.composite, truth.composite, "reference")
     return Drawn(
         figure,
-        f"Not Dobashi et al.'s picture, which the thesis shows, but their technique: `Dobashi2002` with {SLICES} slices "
-        f"in a spot's beam (`dragon`). Shafts of light, and bands where slices cut their edges. Errors of the airlight: "
-        f"{in_words(scattering_error(frame, truth))}.",
+        "Not Dobashi et al.'s picture, which the thesis shows, but their technique: `Dobashi2002` with "
+        f"{SLICES} slices, of which a spot's beam (`dragon`) takes a part. Shafts of light, and bands where slices cut "
+        f"their edges. Errors of the airlight: {in_words(scattering_error(frame, truth))}.",
     )

@@ -159,7 +159,7 @@ MUTATIONS = (
     _subtle(
         "pixel corners",
         "rays through the corners of pixels, surfaces through their centres",
-        Edit("camera_ray.glsl", "(2.0 * vec2(pixel) + 1.0)", "(2.0 * vec2(pixel))"),
+        Edit("camera_ray.glsl", "vec3(on_view_plane(position), 1.0)", "vec3(on_view_plane(position - 0.5), 1.0)"),
     ),
     _subtle(
         "cone 1 % narrower",

@@ -39,20 +39,21 @@ def add_scattering(
     """
     device, technique, scene, light = inputs.device, inputs.technique, inputs.scene, inputs.light
     model, strategy = AIRLIGHT_MODELS[technique.airlight], VISIBILITIES[technique.visibility]
+    defines: dict[str, object] = {
+        **light_defines(scene, light),
+        **inputs.shadow_map.defines,
+        "STEPS": technique.steps,
+        "SHADOW_GIVEN": int(inputs.given is not None),
+        "AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners),
+        **strategy.defines,
+        **supply.defines,
+        **({"COUNTING": 1} if counts else {}),
+        **({"RECORDING": 1} if recording else {}),
+    }
     program = device.program(
         "scattering.frag.glsl",
         strategy.vertex,
-        defines=light_defines(scene, light)
-        | inputs.shadow_map.defines
-        | {
-            "STEPS": technique.steps,
-            "SHADOW_GIVEN": int(inputs.given is not None),
-            "AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners),
-        }
-        | strategy.defines
-        | supply.defines
-        | ({"COUNTING": 1} if counts else {})
-        | ({"RECORDING": 1} if recording else {}),
+        defines=defines,
         includes={
             "<airlight>": model.source,
             "<visibility>": strategy.source,

@@ -11,7 +11,9 @@ void main() {
     int tile = node.x / size;
     node.x -= tile * size;
     if (tile >= TILES || node.y >= size) return;
-    ivec2 first = 2 * node, last = ivec2(node.x + 1 < size ? first.x + 1 : below - 1, node.y + 1 < size ? first.y + 1 : below - 1);
+    // the last takes three where the level below has an odd number
+    ivec2 first = 2 * node, last = ivec2(node.x + 1 < size ? first.x + 1 : below - 1,
+                                         node.y + 1 < size ? first.y + 1 : below - 1);
     vec2 found = vec2(3e38, -3e38);
     for (int y = first.y; y <= last.y; ++y) {
         for (int x = first.x; x <= last.x; ++x) {

@@ -6,6 +6,8 @@ none of them is read.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from gpu_impl.device import Device
@@ -22,25 +24,24 @@ GROUP = 8
 class ShadowPyramid(Supply):
     """Levels 1 and up of one light's map; the map itself is level 0.
 
-    A level has half as many nodes on a side of a tile as the one below, rounded down, like OpenGL's mip levels, and lies
-    in one: its tiles stand side by side from the left. Together they take as many bytes as two thirds of the map's
-    texels twice over.
+    A level has half as many nodes on a side of a tile as the one below, rounded down, like OpenGL's mip levels, and
+    lies in one: its tiles stand side by side from the left. Together they take two thirds as many bytes as the map.
 
     Attributes
     ----------
-    texture : moderngl.Texture    RG32F, mip level i is level i + 1: least and largest distance [scene unit]; None over a
-                                  map of one texel
+    texture : moderngl.Texture    RG32F, mip level i is level i + 1: least and largest distance [scene unit]; None over
+                                  a map of one texel
     """
 
     # surface_shadow.glsl is asked about planes alone
-    defines = {"SOFT_SHADOWS": 0}
+    defines: Mapping[str, object] = MappingProxyType({"SOFT_SHADOWS": 0})
 
     def __init__(self, inputs: FogInputs) -> None:
         shadow_map, device = inputs.shadow_map, inputs.device
         tiles, size = len(shadow_map.matrices), shadow_map.size
         self.texture = None
         if size > 1:
-            # the levels of a texture are all there or none is: it is kept, as allocating them takes longer than a frame has
+            # moderngl allocates levels by having OpenGL compute its own, so the texture is kept from frame to frame
             self.texture = inputs.kept.get(("pyramid", tiles, size), lambda: _levels(device, tiles, size))
             with inputs.clock.time_pass("shadow map"):
                 _fill(device, shadow_map, self.texture)

@@ -14,7 +14,7 @@ A column of a row has the number of the light ray in its middle. What a shadow m
 the column does once more, as it does not lie on the texel; and off the lattice epipolar, where rays lie between rows,
 so does the row.
 
-Source: Chen, Baran, Durand and Jarosz 2011, "Real-Time Volumetric Shadows using 1D Min-Max Mipmaps", sections 3 and 4.
+Source: Chen, Baran, Durand and Jarosz 2011, "Real-Time Volumetric Shadows using 1D Min-Max Mipmaps".
 """
 
 from __future__ import annotations

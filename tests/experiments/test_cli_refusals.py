@@ -162,7 +162,6 @@ def test_a_mesh_folder_that_is_not_there_is_named(airlight, monkeypatch: pytest.
 @pytest.mark.parametrize(
     "words",
     [
-        ["reference", "empty"],
         ["reference", "--out", "a.exr"],
         ["draw"],
         ["render", "empty", "--sise", "3"],

@@ -104,6 +104,18 @@ def test_strategies_that_draw_on_pixels_are_refused(visibility: str) -> None:
         find_technique(f"{visibility}+quadrature", lattice="epipolar")
 
 
+def test_each_light_has_slices_of_its_own(tmp_path) -> None:
+    """And the map may stand in a buffer."""
+    shapes, images = sphere(0.1, 0.2, 0, 0.8), []
+    for names in (["beside it", "behind the eye"], ["beside it"], ["behind the eye"]):
+        emitters = "".join(PLACES[name] for name in names)
+        with Renderer(write_scene(tmp_path, emitters=emitters, shapes=shapes, size=SIZE)) as renderer:
+            storage = "texture" if len(names) == 2 else "buffer"
+            images.append(renderer.render(find_technique("Chen2011", shadow_storage=storage)).scattering)
+    # measured 0
+    np.testing.assert_allclose(images[0], images[1] + images[2], rtol=1e-6)
+
+
 @pytest.mark.parametrize("size", [(1, 1), (1, 9), (3, 2)])
 def test_the_smallest_images_are_drawn(size: tuple[int, int], tmp_path) -> None:
     scene = write_scene(tmp_path, emitters=PLACES["far"], size=size)

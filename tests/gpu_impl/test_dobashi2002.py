@@ -146,16 +146,15 @@ def test_even_light_in_thin_fog_is_exact(tmp_path: Path) -> None:
 
 def test_finer_slices_come_to_the_truth() -> None:
     """Of the whole picture: its mean squared error against the exact shadow of a sphere."""
-    exact = SphereScene(load("sphere", size=(64, 64)))
+    exact = SphereScene(load("sphere", size=(48, 48)))
     truth = exact.scattering()
     errors = []
-    for steps in (16, 64, 256):
-        image = drawn(exact.scene, "slices:1", steps, 2048).scattering
+    for steps in (16, 48, 144):
+        image = drawn(exact.scene, "slices:1", steps, 1024).scattering
         errors.append(float(np.sqrt(np.mean((image - truth) ** 2)) / truth.mean()))
-    # measured: 1.1e-1, 1.4e-2, 4.5e-3
+    # measured: 1.1e-1, 1.9e-2, 8.0e-3
     assert errors[1] < errors[0] / 3
-    assert errors[2] < errors[1] / 2
-    assert errors[2] < 8e-3
+    assert errors[2] < errors[1] / 2 < 1.5e-2
 
 
 def test_finer_cells_come_to_the_truth() -> None:
@@ -163,10 +162,10 @@ def test_finer_cells_come_to_the_truth() -> None:
     scene = load("empty", size=(96, 96))
     truth = whole_ray_airlight(scene)
     errors = {
-        name: np.abs(drawn(scene, name, 256, 8).scattering - truth) for name in ("slices:1", "slices", "slices:32")
+        name: np.abs(drawn(scene, name, 96, 8).scattering - truth) for name in ("slices:1", "slices", "slices:32")
     }
     means = [float(error.mean() / truth.mean()) for error in errors.values()]
-    # measured: 3.2e-4, 9.6e-3, 1.2e-1
+    # measured: 3.4e-4, 9.6e-3, 1.2e-1
     assert means[0] < 1e-3 < 5e-3 < means[1] < 2e-2 < 5e-2 < means[2]
     middle = np.unravel_index(truth[..., 0].argmax(), truth.shape[:2])
     y, x = np.ogrid[:96, :96]

@@ -191,8 +191,7 @@ def test_it_converges_to_shadows_in_closed_form(name: str) -> None:
             truth = shadowed_airlight(scene, frames[0].depth.astype(np.float64))
             errors.append(np.mean([error(frame.scattering, truth) for frame in frames]))
             means.append(np.mean([frame.scattering.mean(dtype=float) for frame in frames]) / truth.mean() - 1)
-    print(name, errors, means)
-    # an eighth of the texels' width: measured RATIOS
+    # an eighth of the width: measured 0.09 (slit) to 0.24 (light_behind_eye, some rays nearly along an edge's plane)
     assert errors[1] < 0.25 * errors[0]
     assert abs(means[1]) < 1e-3
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
@@ -120,7 +121,9 @@ def reported(walk: Walk, storage: str = "texture", changed: dict[str, str] | Non
         one.write(filled.tobytes())
         return one
 
-    textures = [texture(np.column_stack(part)) for part in ((walk.origin, walk.end), (walk.direction, walk.end), [np.zeros((n, 4))])]
+    rays = [np.column_stack([part, walk.end]) for part in (walk.origin, walk.direction)]
+    # no surface ends them
+    textures = [texture(part) for part in (*rays, np.zeros((n, 4)))]
     for unit, one in enumerate(textures, start=1):
         one.use(unit)
     light = walk.light
@@ -141,9 +144,9 @@ def reported(walk: Walk, storage: str = "texture", changed: dict[str, str] | Non
         one.release()
     kept.release()
     device.release()
-    rays = [found[found[:, 0] == ray] for ray in range(n)]
     assert (found[:, 3] == 1).all()
-    return [ray[np.argsort(ray[:, 1])][:, 1:3] for ray in rays], reads
+    told = [found[found[:, 0] == ray] for ray in range(n)]
+    return [pieces[np.argsort(pieces[:, 1])][:, 1:3] for pieces in told], reads
 
 
 def apart(intervals: np.ndarray, expected: list[tuple[float, float]]) -> float:
@@ -158,7 +161,7 @@ def apart(intervals: np.ndarray, expected: list[tuple[float, float]]) -> float:
     events += [(begin, -1) for begin, _ in expected] + [(end, 1) for _, end in expected]
     events.sort()
     level, total = 0, 0.0
-    for (t, step), (following, _) in zip(events[:-1], events[1:], strict=True):
+    for (t, step), (following, _) in itertools.pairwise(events):
         level += step
         total += abs(level) * (following - t)
     return total

@@ -1,11 +1,13 @@
 """What a shadow map says of a ray, by brute force in float64: none of the traversal's code enters.
 
-A ray is cut wherever it meets a plane through the light and a border between two texels, of every tile. The middle of each
-part tells its texel, by the largest of its three coordinates or by the tile's matrix, and the part is lit as far as the
-texel's distance reaches.
+A ray is cut wherever it meets a plane through the light and a border between two texels, of every tile. The middle of
+each part tells its texel, by the largest of its three coordinates or by the tile's matrix, and the part is lit as far
+as the texel's distance reaches.
 """
 
 from __future__ import annotations
+
+import itertools
 
 import numpy as np
 
@@ -32,7 +34,7 @@ def texel_intervals(
     cuts = [begin, end, *_border_crossings(axes, shadow_map.size)]
     cuts = np.unique(np.clip(cuts, begin, end))
     found: list[Interval] = []
-    for part in zip(cuts[:-1], cuts[1:], strict=True):
+    for part in itertools.pairwise(cuts):
         distance = _stored_at(axes, stored, shadow_map.size, 0.5 * sum(part))
         lit = _within(light, origin, direction, distance)
         piece = max(part[0], lit[0]), min(part[1], lit[1])
@@ -106,7 +108,7 @@ def _in_cone(light: Light, origin: np.ndarray, direction: np.ndarray, end: float
     cuts = np.clip([0.0, *roots, end], 0.0, end)
     inside = [
         part
-        for part in zip(cuts[:-1], cuts[1:], strict=True)
+        for part in itertools.pairwise(cuts)
         if part[1] > part[0] and _angle_cosine(light, away + 0.5 * sum(part) * direction) > cosine
     ]
     return inside[0] if inside else (0.0, 0.0)

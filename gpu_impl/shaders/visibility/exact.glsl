@@ -1,8 +1,9 @@
 // Every texel of the shadow map that the ray crosses: what the map says of the ray, without steps.
 //
-// The map is taken at its word: the distance in a texel is that of all directions in it. Along the ray the distance to the
-// light grows on both sides of the place nearest to it, so what a texel lets light reach is an interval around that place,
-// and a node of the pyramid that reaches further than its part of the ray, or less far, needs no closer look.
+// The distance in a texel is that of all directions in it, but for the surface that ends the ray (seen_surface.glsl). Along
+// the ray the distance to the light grows on both sides of the place nearest to it, so what a texel lets light reach is an
+// interval around that place, and a node of the pyramid that reaches further than its part of the ray, or less far, needs
+// no closer look.
 //
 // Progress is counted in whole texels: each step leaves a node by a border, and the border says in which texel the next one
 // begins. Only the other coordinate asks where the line is, and stays within the node. No step is nudged.
@@ -28,9 +29,8 @@ vec2 reach(Approach approach, vec2 stored) {
 #else
     // of x^2 + 2 aside x = stored^2 - nearest^2 the root without cancellation
     vec2 square = beyond * (stored + approach.nearest);
-    vec2 root = sqrt(max(square + approach.aside * approach.aside, 0.0));
-    return vec2(square.x < 0.0 ? -1.0 : square.x / (root.x + approach.aside),
-                square.y < 0.0 ? -1.0 : square.y / (root.y + approach.aside));
+    vec2 root = max(sqrt(max(square + approach.aside * approach.aside, 0.0)) + approach.aside, 1e-18);
+    return vec2(square.x < 0.0 ? -1.0 : square.x / root.x, square.y < 0.0 ? -1.0 : square.y / root.y);
 #endif
 }
 

@@ -17,7 +17,7 @@ void visibility(Ray ray, Light light) {
         // meets beyond everything.
         if (!(from_eye > 0.0)) return;
         // a face between the eye and where the ray begins counts from there on
-        begin = max(0.0, from_eye - dot(ray.o - camera_to_world[3].xyz, ray.d));
+        begin = max(begin, from_eye - dot(ray.o - camera_to_world[3].xyz, ray.d));
         // The rasteriser knows a face's front by its corners as it has rounded them, so that of a volume's faces as many
         // are entered as are left, whatever happens at its edges.
         if (gl_FrontFacing) w = -w;

@@ -53,7 +53,8 @@ vec2 inside_of(MapLine line, out int side) {
 
 Stretch stretch_in(int tile, vec3 nearest, vec3 d, Light light, float begin, float end) {
     MapLine line = line_in_tile(tile, nearest, d, light);
-    Stretch stretch = Stretch(tile, line, ivec2(sign(line.per_along.xy * line.at.z - line.at.xy * line.per_along.z)), end, -1);
+    ivec2 heading = ivec2(sign(line.per_along.xy * line.at.z - line.at.xy * line.per_along.z));
+    Stretch stretch = Stretch(tile, line, heading, end, -1);
     // a spot's cone lies in its tile
 #if TILES > 1 || DIRECTIONAL == 1
     vec2 inside = inside_of(line, stretch.side);
@@ -102,7 +103,8 @@ ivec2 texel_at(MapLine line, float along) {
 
 // Where the stretch leaves a node in x and in y; NEVER where it goes another way, and at the sides of the tile.
 vec2 crossing_of(Stretch stretch, Node node) {
-    ivec2 border = ivec2(stretch.heading.x > 0 ? node.last.x + 1 : node.first.x, stretch.heading.y > 0 ? node.last.y + 1 : node.first.y);
+    ivec2 border = ivec2(stretch.heading.x > 0 ? node.last.x + 1 : node.first.x,
+                         stretch.heading.y > 0 ? node.last.y + 1 : node.first.y);
     vec2 place = vec2(2 * border - tile_size) / float(tile_size);
     vec2 slope = stretch.line.per_along.xy - place * stretch.line.per_along.z;
     vec2 crossing = (place * stretch.line.at.z - stretch.line.at.xy) / slope;
