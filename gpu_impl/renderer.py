@@ -85,6 +85,7 @@ class Renderer:
             layers = self.passes.layers(technique, view)
             surface, scattering, gbuffer = (read(texture) for texture in (*layers, view.gbuffer.normal_and_distance))
             self.device.give_back(*layers)
+        self._check_turns(technique, scattering)
         if not (np.isfinite(surface).all() and np.isfinite(scattering).all()):
             raise InputError(
                 f"{technique.name} draws {self.scene.path} with pixels that are not finite: use {technique.visibility}+"
@@ -191,6 +192,7 @@ class Renderer:
                 recording = Recording(self.device.context, counting.reported, airlight.width)
                 counting.release()
                 self.passes.scatter_light(airlight, technique, view, number, recording=recording, first=True)
+                self._check_turns(technique, read(airlight))
                 found.append(recording.read(self.passes.rays(technique, view, number)))
                 recording.release()
             self.device.give_back(airlight)
@@ -223,6 +225,14 @@ class Renderer:
             device.give_back(cells, whole, *layers)
             view.give_back(device)
         return found
+
+    def _check_turns(self, technique: Technique, airlight_and_pieces: np.ndarray) -> None:
+        """Raise InputError where OpenGL cut loops off (scattering.frag.glsl)."""
+        if (airlight_and_pieces[..., 3] < 0).any():
+            raise InputError(
+                f"{technique.name} takes more turns of its loops than {self.device.info.renderer} allows a pixel, and its "
+                "picture would lack the rest: take fewer steps."
+            )
 
     def _lattice_textures(self, technique: Technique, count: int) -> list[Any]:
         return [self.passes.lattice_texture(technique) for _ in range(count)]

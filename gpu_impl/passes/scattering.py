@@ -21,6 +21,8 @@ from gpu_impl.visibilities.strategy import FogInputs, Supply
 COUNTERS = ("pieces", "shadow_map_reads", "exponential_integrals", "exponentials")
 # binding of `phase_table` in phase/tabulated.glsl
 PHASE_TABLE = 3
+# of the loop by which scattering.frag.glsl notices that its loops are cut off
+TURNS = 2
 # texture unit of the airlight model's table, behind those that strategies take
 TABLE_UNIT = 14
 
@@ -64,7 +66,7 @@ def add_scattering(
     )
     set_uniforms(program, camera_uniforms(scene.camera) | light_uniforms(scene, light, inputs.pictures))
     set_uniforms(program, inputs.shadow_map.bind(unit=0) | inputs.gbuffer.bind(first_unit=1))
-    set_uniforms(program, inputs.lattice.uniforms)
+    set_uniforms(program, inputs.lattice.uniforms | {"turns": TURNS})
     bind_table(program, inputs)
     for part in (supply, inputs.given, recording):
         if part:

@@ -1,5 +1,6 @@
 // Lit intervals of each cell's ray that were found by other means than OpenGL's (given.py), in place of the shadow map.
 #include "current_ray.glsl"
+#include "light.glsl"
 
 // other passes ask the shadow map
 #ifndef SHADOW_GIVEN
@@ -17,8 +18,10 @@ uvec2 given_range() {
     return uvec2(given_offsets[cell], given_offsets[cell + 1]);
 }
 
-// Whether a point of this ray lies in none of them.
-bool in_given_shadow(vec3 point) {
+// Whether a point of this ray lies in none of them. Outside a spot's cone nothing hides the light, as in a shadow map, and
+// whoever asks has to know that there is none.
+bool in_given_shadow(Light light, vec3 point) {
+    if (falloff(light, point) == 0.0) return false;
     float t = dot(point - current_ray.o, current_ray.d) + current_start;
     uvec2 range = given_range();
     for (uint i = range.x; i < range.y; ++i) {

@@ -62,7 +62,7 @@ float distance_from(Light light, vec3 point) {
 
 #if SHADOW_GIVEN == 1
 // The map is left aside: `point` is one of this invocation's ray.
-bool in_shadow(Light light, vec3 point) { return in_given_shadow(point); }
+bool in_shadow(Light light, vec3 point) { return in_given_shadow(light, point); }
 #else
 bool in_shadow(Light light, vec3 point) { return distance_from(light, point) > nearest_surface(light, point); }
 #endif

@@ -114,6 +114,9 @@ def test_a_renderer_that_casts_no_rays_says_who_does(scene: Scene) -> None:
 
 def test_a_control_has_no_time(scene: Scene) -> None:
     with Renderer(scene, find_lit=two_pieces) as renderer:
-        for technique in ("given+quadrature", "uniform_march+riemann"):
+        for technique, source in (("given+quadrature", "map"), ("uniform_march+riemann", "rays")):
             with pytest.raises(InputError, match="time means nothing"):
-                renderer.milliseconds(find_technique(technique, shadow_source="rays"))
+                renderer.milliseconds(find_technique(technique, shadow_source=source))
+    # what knows the answer without asking about points is asked nothing
+    with pytest.raises(InputError, match="does not ask about points"):
+        find_technique("given+quadrature", shadow_source="rays")
