@@ -10,7 +10,13 @@ import numpy as np
 from experiments.exr import read_with_notices, write_exr
 from experiments.exr_layers import Layers
 from experiments.metrics import signed_relative_error
-from experiments.provenance import describe_files, describe_frame, describe_reference, describe_scene
+from experiments.provenance import (
+    describe_files,
+    describe_frame,
+    describe_own_files,
+    describe_reference,
+    describe_scene,
+)
 from gpu_impl.frame import Frame
 from reference.estimate import LAYERS, Reference
 from scenes.errors import InputError
@@ -47,7 +53,7 @@ def read_picture(path: str | Path) -> Picture:
 
 def write_frame(path: Path, scene: Scene, frame: Frame) -> None:
     """Write what a technique drew."""
-    _write(path, scene, frame.layers, describe_frame(frame), frame)
+    _write(path, scene, frame.layers, _drawn(frame), frame)
 
 
 def write_reference(path: Path, scene: Scene, reference: Reference) -> None:
@@ -64,7 +70,11 @@ def write_case(path: Path, scene: Scene, frame: Frame, reference: Reference) -> 
         layers[f"standard_error.{layer}"] = reference.standard_error(layer)
         if np.any(truth > 0):
             layers[f"error.{layer}"] = signed_relative_error(getattr(frame, layer), truth)
-    _write(path, scene, layers, describe_frame(frame) | describe_reference(reference), frame, reference)
+    _write(path, scene, layers, _drawn(frame) | describe_reference(reference), frame, reference)
+
+
+def _drawn(frame: Frame) -> dict[str, str]:
+    return describe_frame(frame) | describe_own_files(frame.technique)
 
 
 def _write(path: Path, scene: Scene, layers: Layers, metadata: dict[str, str], *results: Frame | Reference) -> None:

@@ -10,15 +10,18 @@ from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     # the doctor asks for versions where the rest may not import
     from gpu_impl.frame import Frame
+    from gpu_impl.techniques import Technique
     from reference.estimate import Reference
     from scenes.model import Scene
 
-# keys of the technique's fields, where "airlight" is the program's version; the last two are of somebody's own alone
+# fields that a technique of somebody's own alone has
+OWN_FIELDS = ("file", "texts")
+# keys of the technique's fields, where "airlight" is the program's version
 TECHNIQUE_KEYS = {
     "name": "technique",
     "airlight": "airlight_model",
@@ -107,12 +110,23 @@ def file_hashes(scene: Scene) -> dict[str, Path]:
     return {f"{path.name}:{sha256(path)}": path for path in paths}
 
 
+def describe_technique(technique: Technique) -> dict[str, Any]:
+    """A technique's fields, each of them that any technique has, as tables and metadata call them."""
+    names = [field.name for field in fields(technique) if field.name not in OWN_FIELDS]
+    return {TECHNIQUE_KEYS.get(name, name): getattr(technique, name) for name in names}
+
+
+def describe_own_files(technique: Technique) -> dict[str, str]:
+    """Path and texts of the files of a technique of somebody's own, nothing of any other; in an EXR only.
+
+    A table is read on other machines, and would hold them once a row.
+    """
+    return {TECHNIQUE_KEYS[name]: getattr(technique, name) for name in OWN_FIELDS if hasattr(technique, name)}
+
+
 def describe_frame(frame: Frame) -> dict[str, str]:
-    """Metadata of what drew a frame: the technique's fields, each of them, and OpenGL's strings."""
-    technique = frame.technique
-    settings = {
-        TECHNIQUE_KEYS.get(field.name, field.name): str(getattr(technique, field.name)) for field in fields(technique)
-    }
+    """Metadata of what drew a frame: the technique's fields and OpenGL's strings."""
+    settings = {key: str(value) for key, value in describe_technique(frame.technique).items()}
     return {**settings, "gl_renderer": frame.gl.renderer, "gl_version": frame.gl.version}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 import sys
 from collections.abc import Sequence
@@ -65,17 +66,21 @@ def run(
     from experiments.run.rows import finished
     from experiments.run.scenes_of import look_at_scenes
     from experiments.run.suite_run import Plan, SuiteRun
+    from gpu_impl.own_technique import OwnTechnique
 
     seen = look_at_scenes(cases)
     for notice in seen.notices:
         warn(notice)
     digest = digest_of(loaded, cases, seen.digests)
     command = shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
+    techniques = [case.technique for case in cases]
     contents = {
         "command": command,
         "study": loaded.study,
         "cases": len(cases),
         "contents": loaded.model_dump(mode="json"),
+        # what files hold, by the technique's file: no table has it
+        "own_techniques": {one.file: json.loads(one.texts) for one in techniques if isinstance(one, OwnTechnique)},
     }
     if resume:
         folder = resume_run(resume, name, digest)

@@ -20,7 +20,9 @@ LatticeName = Annotated[
 Downsample = Annotated[
     int | None, typer.Option(metavar="N", help="How coarse the lattice is: every N-th pixel of the grid.")
 ]
-Upsample = Annotated[str | None, typer.Option(metavar="U", help="What fills the pixels between those of the grid (`airlight list`).")]
+Upsample = Annotated[
+    str | None, typer.Option(metavar="U", help="What fills the pixels between those of the grid (`airlight list`).")
+]
 SurfaceShadows = Annotated[
     str | None, typer.Option(metavar="KIND", help="Shadows on surfaces: hard, or soft (percentage-closer filtering).")
 ]
@@ -29,7 +31,9 @@ ShadowStorage = Annotated[
 ]
 ShadowSource = Annotated[
     str | None,
-    typer.Option(metavar="KIND", help="What says where it is dark: the shadow map, or rays of the reference, a control."),
+    typer.Option(
+        metavar="KIND", help="What says where it is dark: the shadow map, or rays of the reference, a control."
+    ),
 ]
 Composition = Annotated[
     str | None,

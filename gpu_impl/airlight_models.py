@@ -62,7 +62,9 @@ class AirlightShader:
     any_light : bool              whether it takes directional lights, and lights outside a bounded medium
     generated : callable          texts of the includes that are computed for a phase function, by name
     table : callable or None      float32 values (rows, columns[, components]) for a phase function, which the shader
-                                  reads as `uniform sampler2D airlight_table`, interpolated
+                                  reads as `uniform sampler2D airlight_table`: texture() interpolates, texelFetch() does not
+    depth_only : bool             whether it takes the light to be all along the ray as it is at the eye's place, so that
+                                  nothing of what a spot sends in each direction counts but where its cone ends
     """
 
     source: str
@@ -71,6 +73,7 @@ class AirlightShader:
     any_light: bool = True
     generated: Callable[[Phase], Mapping[str, str]] = nothing
     table: Callable[[Phase], NDArray[np.float32]] | None = None
+    depth_only: bool = False
 
 
 def _closed_form(
@@ -112,7 +115,9 @@ AIRLIGHT_MODELS = {
     "sun2005": _sun2005(sun2005.PUBLISHED_SIDE),
     **{f"sun2005:{side}": _sun2005(side) for side in sun2005.SIDES},
     "depth_fog": AirlightShader(
-        "airlight/depth_fog.glsl", "fog lit all along the ray as it is at the eye's place: only depth counts"
+        "airlight/depth_fog.glsl",
+        "fog lit all along the ray as it is at the eye's place: only depth counts",
+        depth_only=True,
     ),
     "quadrature": AirlightShader(
         "airlight/quadrature.glsl", f"{QUADRATURE_NODES} tuned nodes under a rational map", generated=_nodes

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
@@ -29,6 +30,8 @@ class Device:
         self.largest_texture: int = self.context.info["GL_MAX_TEXTURE_SIZE"]
         self._programs: dict[tuple, Any] = {}
         self._spare: dict[tuple, list[Any]] = {}
+        # what is in use, by identity
+        self._taken: dict[int, Any] = {}
 
     def program(
         self,
@@ -63,23 +66,43 @@ class Device:
         """
         spare = self._spare.get((size, components, dtype))
         if spare:
-            return spare.pop()
-        new = self.context.texture if len(size) == 2 else self.context.texture_array
-        texture = new(size, components, dtype=dtype)
-        texture.filter = (self.context.NEAREST, self.context.NEAREST)
+            texture = spare.pop()
+        else:
+            new = self.context.texture if len(size) == 2 else self.context.texture_array
+            texture = new(size, components, dtype=dtype)
+            texture.filter = (self.context.NEAREST, self.context.NEAREST)
+        self._taken[id(texture)] = texture
         return texture
 
     def buffer(self, size: int) -> Any:
         """Take a buffer of `size` bytes, new or given back; what it holds is undefined."""
         spare = self._spare.get((size,))
-        return spare.pop() if spare else self.context.buffer(reserve=size)
+        buffer = spare.pop() if spare else self.context.buffer(reserve=size)
+        self._taken[id(buffer)] = buffer
+        return buffer
 
     def give_back(self, *memory: Any) -> None:
         """Keep textures and buffers for whoever asks for one of their kind next."""
+        self.keep(*memory)
         for one in memory:
             texture = hasattr(one, "components")
             kind = (one.size, one.components, one.dtype) if texture else (one.size,)
             self._spare.setdefault(kind, []).append(one)
+
+    def keep(self, *memory: Any) -> None:
+        """Leave textures and buffers to whoever took them, also where the drawing that they were taken for fails."""
+        for one in memory:
+            self._taken.pop(id(one), None)
+
+    @contextmanager
+    def taking_back(self) -> Iterator[None]:
+        """Stand around a drawing: where it stops half-way, what it took and has neither given back nor kept is free."""
+        before = set(self._taken)
+        try:
+            yield
+        except BaseException:
+            self.give_back(*[one for number, one in self._taken.items() if number not in before])
+            raise
 
     def release_spare_textures(self) -> None:
         """Release what was given back."""

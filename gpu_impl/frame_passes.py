@@ -36,9 +36,14 @@ class View:
     shadow_maps: tuple[ShadowMap, ...]
     surface: Any
 
+    @property
+    def memory(self) -> tuple[Any, ...]:
+        """Its textures and buffers."""
+        return *self.gbuffer.textures, self.surface, *(found.memory for found in self.shadow_maps)
+
     def give_back(self, device: Device) -> None:
         """Give the textures and buffers back."""
-        device.give_back(*self.gbuffer.textures, self.surface, *(found.memory for found in self.shadow_maps))
+        device.give_back(*self.memory)
 
 
 def view_key(technique: Technique) -> tuple[object, ...]:
@@ -144,7 +149,7 @@ class FramePasses:
         return whole
 
     def reconstruct(self, target: Any, technique: Technique, view: View, number: int, airlight: Any) -> None:
-        """Bring a light's airlight to full resolution from a lattice that is its own, and add it to the lights' before."""
+        """Bring a light's airlight to full resolution from its own lattice, and add it to the lights' before."""
         lattice = self.lattice(technique, number)
         with self.clock.time_pass("combination"):
             reconstruct(self.device, target, lattice, self.scene, view.gbuffer, airlight, first=number == 0)

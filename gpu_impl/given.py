@@ -50,8 +50,8 @@ def find_none(scene: Scene, number: int, positions: Array) -> Found:
         Always.
     """
     raise InputError(
-        "Lit intervals of this technique come from ray casting, and nothing here casts rays: draw it by airlight.render "
-        "or `airlight render`."
+        "Lit intervals of this technique come from ray casting, and nothing here casts rays: draw it by "
+        "airlight.render or `airlight render`."
     )
 
 

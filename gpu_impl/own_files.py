@@ -17,13 +17,31 @@ from scenes.errors import InputError
 from scenes.file_names import check_name
 
 DIGITS = 12
+# between a file's name and what it holds, and in no name of airlight's own
+OWN = "@"
+TAKES = "a technique takes files from its own folder and from those in it: put it there"
+
+
+def _is_below(path: Path, folder: Path) -> bool:
+    # where links lead
+    return path.resolve().is_relative_to(folder.resolve())
+
+
+def _way_out(include: str) -> str:
+    if (shader_source.SHADERS / include).is_file():
+        return "a file beside goes before airlight's of the same name, so call yours otherwise"
+    return "take the include out"
 
 
 class OwnFiles:
     """Reads files, each once, and remembers what they hold.
 
+    What they hold goes into pictures, which people pass on. So files from the disk are those below one folder alone: no
+    technique that somebody was sent takes others along.
+
     Parameters
     ----------
+    folder : that of the technique's TOML file
     given : what files hold, by their paths, in place of the disk
 
     Attributes
@@ -31,8 +49,9 @@ class OwnFiles:
     texts : dict    path to text of every file that was read
     """
 
-    def __init__(self, given: Mapping[str, str] | None = None) -> None:
+    def __init__(self, folder: Path, given: Mapping[str, str] | None = None) -> None:
         self.texts: dict[str, str] = {}
+        self._folder = folder
         self._given = given
 
     def read(self, path: Path) -> str:
@@ -41,9 +60,11 @@ class OwnFiles:
         Raises
         ------
         InputError
-            It is not there, cannot be read or is not UTF-8.
+            It is not there, cannot be read, is not UTF-8, or is no file that a technique may take.
         """
         check_name(path)
+        if not self._may_take(path):
+            raise InputError(f"{path} is outside of {self._folder}; {TAKES}.")
         if str(path) not in self.texts:
             try:
                 kept = self._given[str(path)] if self._given is not None else None
@@ -55,6 +76,9 @@ class OwnFiles:
             except ValueError:
                 raise InputError(f"{path} is not UTF-8; save it as such.") from None
         return self.texts[str(path)]
+
+    def _may_take(self, path: Path) -> bool:
+        return self._given is not None or _is_below(path, self._folder)
 
     def has(self, path: Path) -> bool:
         """Whether there is such a file."""
@@ -78,11 +102,11 @@ class OwnFiles:
             # <airlight>, <phase> and the like are put in where the program is made
             if include and not include[1].startswith("<"):
                 name = self._included(path, number, include[1], (*above, path))
-                line = line.replace(include[1], name)
+                line = line[: include.start(1)] + name + line[include.end(1) :]
             lines.append(line)
         text = "".join(lines)
         # with its includes' names, and so with what they hold
-        name = f"{path.name}@{hashlib.sha256(text.encode()).hexdigest()[:DIGITS]}"
+        name = f"{path.name}{OWN}{hashlib.sha256(text.encode()).hexdigest()[:DIGITS]}"
         OWN_FILES[name] = OwnFile(str(path), text)
         return name
 
@@ -90,10 +114,14 @@ class OwnFiles:
         # one path for one file, or the way back to itself would never end
         beside = Path(os.path.normpath(path.parent / include))
         if self.has(beside):
+            if not self._may_take(beside):
+                raise InputError(f"{path}:{number}: {include} is outside of {self._folder}; {TAKES}.")
             if beside in above:
-                raise InputError(f"{path}:{number}: {include} includes itself; take the include out.")
+                raise InputError(f"{path}:{number}: {include} includes itself; {_way_out(include)}.")
             return self.shader(beside, above)
-        if not (shader_source.SHADERS / include).is_file():
+        ours = shader_source.SHADERS / include
+        # nor the way from there to any other file
+        if not (ours.is_file() and _is_below(ours, shader_source.SHADERS)):
             raise InputError(
                 f"{path}:{number}: there is no {include}, neither beside this file nor among airlight's shaders."
             )

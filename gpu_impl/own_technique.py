@@ -15,11 +15,10 @@ from pydantic import ValidationError
 
 from gpu_impl.airlight_models import AIRLIGHT_MODELS, AirlightShader
 from gpu_impl.lattices import LATTICES
-from gpu_impl.own_files import DIGITS, OwnFiles
+from gpu_impl.own_files import DIGITS, OWN, OwnFiles
 from gpu_impl.own_technique_schema import (
     NAMED,
     OF_A_FILE,
-    OWN,
     AirlightPart,
     Described,
     LatticePart,
@@ -59,7 +58,9 @@ def load_technique(path: Path) -> OwnTechnique:
         The file, or one of those that it names, is missing, or holds what no technique takes: in one sentence with the
         key and the line.
     """
-    return _load(path.absolute(), OwnFiles())
+    # one path for one file: a technique is the same wherever it is named from
+    path = Path(os.path.normpath(path.absolute()))
+    return _load(path, OwnFiles(path.parent))
 
 
 def make_known(file: str, texts: str) -> None:
@@ -73,7 +74,8 @@ def make_known(file: str, texts: str) -> None:
     given = json.loads(texts)
     if not isinstance(given, dict) or not all(isinstance(text, str) for text in given.values()):
         raise ValueError("texts must be a JSON object of texts")
-    _load(Path(file), OwnFiles(given))
+    path = Path(file)
+    _load(path, OwnFiles(path.parent, given))
 
 
 def _unpacked(values: Mapping[str, Any]) -> OwnTechnique:
@@ -91,7 +93,8 @@ def _load(path: Path, files: OwnFiles) -> OwnTechnique:
     try:
         described = Described.model_validate(found)
     except ValidationError as error:
-        first = error.errors()[0]
+        # a key that is wrong explains one that is missing
+        first = min(error.errors(), key=lambda one: one["type"] != "extra_forbidden")
         # without the kind of part that pydantic put between
         key = tuple(part for part in first["loc"] if part not in (NAMED, OF_A_FILE))
         while first["type"] != "missing" and len(key) > 1 and not is_there(found, key):
@@ -130,13 +133,8 @@ def _visibility(part: str | VisibilityPart, folder: Path, files: OwnFiles) -> st
         return part
     source = files.shader(_path(folder, part.file))
     like = VISIBILITIES[part.supply] if part.supply else Visibility(source, part.what)
-    VISIBILITIES[_name(part, source)] = replace(
-        like,
-        source=source,
-        what=part.what,
-        reads_shadow_map=part.reads_shadow_map,
-        asks_points=part.asks_points,
-    )
+    said = part.model_dump(include={"reads_shadow_map", "asks_points"}, exclude_none=True)
+    VISIBILITIES[_name(part, source)] = replace(like, source=source, what=part.what, **said)
     return _name(part, source)
 
 
@@ -146,9 +144,10 @@ def _airlight(part: str | AirlightPart, folder: Path, files: OwnFiles) -> str:
         return part
     source = files.shader(_path(folder, part.file))
     like = AIRLIGHT_MODELS[part.supply] if part.supply else AirlightShader(source, part.what)
-    phases = tuple(part.phases) if part.phases else None
-    model = replace(like, source=source, what=part.what, phases=phases, any_light=part.any_light)
-    AIRLIGHT_MODELS[_name(part, source)] = model
+    said = part.model_dump(include={"phases", "any_light"}, exclude_none=True)
+    if "phases" in said:
+        said["phases"] = tuple(said["phases"])
+    AIRLIGHT_MODELS[_name(part, source)] = replace(like, source=source, what=part.what, **said)
     return _name(part, source)
 
 

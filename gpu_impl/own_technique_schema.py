@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Any
@@ -11,13 +12,13 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Dis
 from analytic.phase import PHASES
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.lattices import LATTICES
+from gpu_impl.own_files import OWN
 from gpu_impl.techniques import SETTINGS, TECHNIQUES
 from gpu_impl.visibilities import VISIBILITIES
+from scenes.media import PHASES as PLUGINS
 
 # the ending by which a text is a file and not a name
 ENDING = ".glsl"
-# behind it, in a registry, stands what a part of somebody's own holds (own_files.py)
-OWN = "@"
 
 
 def _known(known: Mapping[str, object], name: str) -> str:
@@ -28,7 +29,16 @@ def _known(known: Mapping[str, object], name: str) -> str:
     return name
 
 
+def _phase(name: str) -> str:
+    # scenes call some by the name of Mitsuba's plugin
+    return PLUGINS[name][0] if name in PLUGINS else _known(PHASES, name)
+
+
 def _is_free(name: str) -> str:
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9 ._:-]{0,59}", name):
+        raise ValueError(
+            "use 1 to 60 letters, digits, spaces, points, colons, hyphens and underscores, a letter or a digit first"
+        )
     if name in TECHNIQUES:
         raise ValueError(f"airlight has a technique {name}; call yours otherwise")
     return name
@@ -45,7 +55,7 @@ def _are_settings(settings: dict[str, Any]) -> dict[str, Any]:
 VisibilityName = Annotated[str, AfterValidator(partial(_known, VISIBILITIES))]
 AirlightName = Annotated[str, AfterValidator(partial(_known, AIRLIGHT_MODELS))]
 LatticeName = Annotated[str, AfterValidator(partial(_known, LATTICES))]
-PhaseName = Annotated[str, AfterValidator(partial(_known, PHASES))]
+PhaseName = Annotated[str, AfterValidator(_phase)]
 YesOrNo = Annotated[bool, Field(strict=True)]
 
 
@@ -73,14 +83,14 @@ class VisibilityPart(Part):
     ----------
     supply : str               a registered one: what it is given, this one is given too, such as shadow polygons
                                (lit_intervals) or the pyramid over the shadow map (exact)
-    reads_shadow_map : bool    whether the map's resolution is part of its error
+    reads_shadow_map : bool    whether the map's resolution is part of its error; left out, as with `supply`, or yes
     asks_points : bool         whether it asks in_shadow() about points on the ray and nothing else what is dark, so
-                               that a control can answer in place of the shadow map
+                               that a control can answer in place of the shadow map; left out, as with `supply`, or yes
     """
 
     supply: VisibilityName | None = None
-    reads_shadow_map: YesOrNo = True
-    asks_points: YesOrNo = True
+    reads_shadow_map: YesOrNo | None = None
+    asks_points: YesOrNo | None = None
 
 
 class AirlightPart(Part):
@@ -89,13 +99,14 @@ class AirlightPart(Part):
     Attributes
     ----------
     supply : str       a registered one: its computed includes and its table are there for this one too
-    phases : list      names of the phase functions that it takes; all by default
-    any_light : bool   whether it takes directional lights, and lights outside a bounded medium
+    phases : list      names of the phase functions that it takes; left out, those of `supply`, or all
+    any_light : bool   whether it takes directional lights, and lights outside a bounded medium; left out, as with
+                       `supply`, or yes
     """
 
     supply: AirlightName | None = None
     phases: Annotated[list[PhaseName], Field(min_length=1)] | None = None
-    any_light: YesOrNo = True
+    any_light: YesOrNo | None = None
 
 
 class LatticePart(Part):
@@ -112,6 +123,8 @@ class LatticePart(Part):
 
 
 def _as_file(part: Any) -> Any:
+    if not isinstance(part, str | dict):
+        raise ValueError('give the name of a registered part, or one file of GLSL as "mine.glsl" or { file = ... }')
     return {"file": part} if isinstance(part, str) and part.endswith(ENDING) else part
 
 
@@ -129,7 +142,7 @@ Form = Discriminator(_form)
 class Described(_Strict):
     """The whole file: each part by a registered name, by a file, or by a table that says more about the file."""
 
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._:-]{0,59}$"), AfterValidator(_is_free)]
+    name: Annotated[str, AfterValidator(_is_free)]
     visibility: Annotated[
         Annotated[VisibilityName, Tag(NAMED)] | Annotated[VisibilityPart, Tag(OF_A_FILE)],
         Form,

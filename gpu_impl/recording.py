@@ -22,7 +22,7 @@ class Pieces:
 
     Attributes
     ----------
-    positions : (h, w, 2)     where in the image each cell of the lattice looks [pixel]; see shaders/lattice_rays.frag.glsl
+    positions : (h, w, 2)     where in the image each cell looks [pixel]; see shaders/lattice_rays.frag.glsl
     start : (h, w)            how far behind the beginning of `Camera.rays` the fog begins there [scene unit]
     cell : (n,) int           each piece's, row by row
     t0, dt : (n,)             begin, counted from `start`, and length [scene unit], inside the light's cone where the
@@ -80,7 +80,7 @@ class Recording:
         order = np.lexsort([t0, cell])
         return Pieces(rays[..., :2], rays[..., 2], cell[order], t0[order], dt[order], w[order], rays[..., 3])
 
-    def release(self) -> None:
+    def close(self) -> None:
         """Give the buffers back."""
         self._count.release()
         self._pieces.release()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from gpu_impl.frame import Frame
 from gpu_impl.frame_passes import FramePasses, View, view_key
 from gpu_impl.given import Finder, find_none
 from gpu_impl.motion import moved
-from gpu_impl.passes.scattering import COUNTERS
+from gpu_impl.passes.scattering import COUNTERS, OF_MODELS
 from gpu_impl.passes.shadow_map import check_map_size
 from gpu_impl.passes.tone_mapping import tone_map
 from gpu_impl.recording import Pieces, Recording
@@ -80,16 +80,19 @@ class Renderer:
         with self._drawing(technique):
             key = view_key(technique)
             if key not in self._views:
-                self._views[key] = self.passes.see(technique)
+                seen = self.passes.see(technique)
+                self.device.keep(*seen.memory)
+                self._views[key] = seen
             view = self._views[key]
             layers = self.passes.layers(technique, view)
             surface, scattering, gbuffer = (read(texture) for texture in (*layers, view.gbuffer.normal_and_distance))
             self.device.give_back(*layers)
         self._check_turns(technique, scattering)
         if not (np.isfinite(surface).all() and np.isfinite(scattering).all()):
+            other = "" if technique.airlight == "quadrature" else f"use {technique.with_quadrature}, or "
             raise InputError(
-                f"{technique.name} draws {self.scene.path} with pixels that are not finite: use {technique.visibility}+"
-                "quadrature, or bring the scene's intensities, lengths and coefficients nearer to 1."
+                f"{technique.name} draws {self.scene.path} with pixels that are not finite: {other}bring "
+                "the scene's intensities, lengths and coefficients nearer to 1."
             )
         far = self.scene.camera.rays()[2]
         return Frame(
@@ -157,7 +160,9 @@ class Renderer:
         -------
         dict
             Arrays (h, w) of the lattice's cells by their names in `COUNTERS`: lit pieces handed to the airlight model,
-            texels read from shadow maps, exponential integrals, and exponentials, a colour's counted as three.
+            texels read from shadow maps, exponential integrals, and exponentials, a colour's counted as three. Work of
+            the passes before is not counted, such as that on an epipolar row's tree or a slice's corners; where the
+            airlight model runs at corners alone, its integrals and exponentials are not a number.
         """
         with self._drawing(technique):
             view, airlight, counts = self.passes.see(technique), *self._lattice_textures(technique, 2)
@@ -167,7 +172,10 @@ class Renderer:
                 of_lights.append(read(counts))
             self.device.give_back(airlight, counts)
             view.give_back(self.device)
-        return dict(zip(COUNTERS, np.moveaxis(np.sum(of_lights, axis=0), -1, 0), strict=True))
+        found = dict(zip(COUNTERS, np.moveaxis(np.sum(of_lights, axis=0), -1, 0), strict=True))
+        if VISIBILITIES[technique.visibility].airlight_at_corners:
+            found |= {name: np.full_like(found[name], np.nan) for name in OF_MODELS}
+        return found
 
     def record(self, technique: Technique) -> list[Pieces]:
         """Find what the technique calls lit, for each light: the pieces that it hands to its airlight model.
@@ -187,14 +195,13 @@ class Renderer:
             for number in range(len(self.passes.lights)):
                 # How many there are is known from a first pass, by the same program: another build's fused products
                 # may tear a piece in two.
-                counting = Recording(self.device.context, 0, airlight.width)
-                self.passes.scatter_light(airlight, technique, view, number, recording=counting, first=True)
-                recording = Recording(self.device.context, counting.reported, airlight.width)
-                counting.release()
-                self.passes.scatter_light(airlight, technique, view, number, recording=recording, first=True)
-                self._check_turns(technique, read(airlight))
-                found.append(recording.read(self.passes.rays(technique, view, number)))
-                recording.release()
+                with closing(Recording(self.device.context, 0, airlight.width)) as counting:
+                    self.passes.scatter_light(airlight, technique, view, number, recording=counting, first=True)
+                    room = counting.reported
+                with closing(Recording(self.device.context, room, airlight.width)) as recording:
+                    self.passes.scatter_light(airlight, technique, view, number, recording=recording, first=True)
+                    self._check_turns(technique, read(airlight))
+                    found.append(recording.read(self.passes.rays(technique, view, number)))
             self.device.give_back(airlight)
             view.give_back(self.device)
         return found
@@ -230,8 +237,8 @@ class Renderer:
         """Raise InputError where OpenGL cut loops off (scattering.frag.glsl)."""
         if (airlight_and_pieces[..., 3] < 0).any():
             raise InputError(
-                f"{technique.name} takes more turns of its loops than {self.device.info.renderer} allows a pixel, and its "
-                "picture would lack the rest: take fewer steps."
+                f"{technique.name} takes more turns of its loops than {self.device.info.renderer} allows a pixel, and "
+                "its picture would lack the rest: take fewer steps."
             )
 
     def _lattice_textures(self, technique: Technique, count: int) -> list[Any]:
@@ -249,7 +256,8 @@ class Renderer:
         VISIBILITIES[technique.visibility].check(self.device)
         self.device.begin_drawing()
         try:
-            yield
+            with self.device.taking_back():
+                yield
         except moderngl.Error as error:
             camera = self.scene.camera
             raise InputError(

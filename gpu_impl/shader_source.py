@@ -15,7 +15,8 @@ from scenes.messages import readable
 
 SHADERS = Path(__file__).parent / "shaders"
 HEADER = "#version 430 core\n"
-INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
+# nothing behind it but a comment
+INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"\s*(?://.*|/\*.*\*/\s*)?$')
 # in a file
 MOST_LINES = 100_000
 # Mesa: "2:14(5): error", NVIDIA: "2(14) : error", others: "2:14: error"
@@ -43,6 +44,11 @@ class OwnFile:
 
 # by the names that includes and registries have for them; own_files.py puts them there
 OWN_FILES: dict[str, OwnFile] = {}
+
+
+def _shown(name: str) -> str:
+    """A shader file as messages have it."""
+    return OWN_FILES[name].path if name in OWN_FILES else name
 
 
 class ShaderError(RuntimeError):
@@ -81,12 +87,29 @@ class ShaderSource:
         number = len(self.files)
         self.files.append(name)
         own = OWN_FILES.get(name)
-        text = own.text if own else self._generated.get(name) or (SHADERS / name).read_text()
+        text = own.text if own else self._generated.get(name)
+        if text is None:
+            text = (SHADERS / name).read_text()
         lines = [f"#line {_told(number, 1)}\n"]
         for line_number, line in enumerate(text.splitlines(keepends=True), start=1):
             include = INCLUDE.match(line)
+            if include and not self._knows(include[1]):
+                raise self._unknown(f"{_shown(name)}:{line_number}", include[1])
             lines.append(self._expand(include[1]) + f"#line {_told(number, line_number + 1)}\n" if include else line)
         return "".join(lines) + "\n"
+
+    def _knows(self, include: str) -> bool:
+        return not include.startswith("<") or include in self._includes or include in self._generated
+
+    def _unknown(self, place: str, include: str) -> Exception:
+        message = f"{place}: there is no {include} here"
+        if not self.own_files:
+            return ShaderError(message)
+        known = ", ".join((*self._includes, *self._generated)) or "none such"
+        return InputError(
+            f'{message}, but {known}; a model with supply = "NAME" has the computed includes of the registered one, '
+            "for the phase functions that it takes."
+        )
 
     @property
     def own_files(self) -> list[str]:
@@ -95,7 +118,7 @@ class ShaderSource:
 
     def name_files(self, message: str) -> str:
         """Replace the file numbers of a compiler's message by names."""
-        shown = [OWN_FILES[name].path if name in OWN_FILES else name for name in self.files]
+        shown = [_shown(name) for name in self.files]
 
         def named(place: re.Match[str]) -> str:
             number, line = divmod(int(place[2]), MOST_LINES)
@@ -112,9 +135,9 @@ class ShaderSource:
         for line in lines:
             if line.startswith(tuple(self.own_files)):
                 return InputError(f"{readable(line)}.")
-        # a function that is missing is missing nowhere
-        said = f": {readable(lines[0])}" if lines else ""
-        return InputError(f"The shader with {' and '.join(self.own_files)} does not compile{said}.")
+        # a function that is missing is missing nowhere, and some compilers never say "error"
+        said = lines[0] if lines else " ".join(message.split())
+        return InputError(f"The shader with {' and '.join(self.own_files)} does not compile: {readable(said)}.")
 
 
 def compile_program(context: Any, vertex: ShaderSource, fragment: ShaderSource) -> Any:

@@ -6,7 +6,7 @@ the triangles at it do not cancel, +1 or -1 for each by the way in which it runs
 
 A body is to count once, not once for its lit side and once for its dark one. Where a part of a mesh is closed, each
 edge run along as often in either direction, the triangles that face the light cast and no others; from a light inside
-those that look away from it (shaders/shadow_faces/edges.comp.glsl). Any other part is a sheet, of which every triangle
+those that look away from it (shaders/shadow_faces/faces.comp.glsl). Any other part is a sheet, of which every triangle
 casts. A body that folds back behind itself, and a sheet with a curl, count as often as the light meets them.
 """
 
@@ -27,8 +27,10 @@ from gpu_impl.silhouettes import welded
 from gpu_impl.textures import PictureTextures
 from scenes.model import Array, Light, Scene
 
-# bytes of the structures Part and Face of shaders/shadow_faces/buffers.glsl
-PART, FACE = 12, 32
+# bytes of the structures Part, Face and Draw of shaders/shadow_faces/buffers.glsl
+PART, FACE, DRAW = 12, 48, 20
+# invocations of a work group of faces.comp.glsl, whose faces are one draw call
+DRAWN_GROUP = 512
 
 
 def parts_of(vertices: int, faces: Array, mesh: Array) -> Array:
@@ -88,8 +90,10 @@ class ShadowCasters:
 
     Attributes
     ----------
-    faces : buffer        of the volumes that were found last; see shaders/shadow_faces/buffers.glsl
-    draw_call : buffer    how many corners they have, as glDrawArraysIndirect takes it; how many volumes hold the eye
+    faces : buffer         of the volumes that were found last; see shaders/shadow_faces/buffers.glsl
+    draw_calls : buffer    of all of the picture, once, and of the faces, as glMultiDrawArraysIndirect takes them; and how
+                           many volumes hold the eye
+    draws : int            how many calls
     """
 
     def __init__(self, context: Any, scene: Scene) -> None:
@@ -107,9 +111,10 @@ class ShadowCasters:
         constant = [context.buffer(part.tobytes() or bytes(16)) for part in (padded, triangles, edges, sides)]
         facing = context.buffer(reserve=max(4 * self._triangles, 4))
         self._counts = context.buffer(reserve=PART * self._parts)
-        self.faces = context.buffer(reserve=max(FACE * self._edges, FACE))
-        self.draw_call = context.buffer(reserve=20)
-        self._buffers = (*constant, facing, self._counts, self.faces, self.draw_call)
+        self.faces = context.buffer(reserve=max(FACE * (self._edges + self._triangles), FACE))
+        self.draws = 1 + -(-(self._edges + self._triangles) // DRAWN_GROUP)
+        self.draw_calls = context.buffer(reserve=DRAW * self.draws)
+        self._buffers = (*constant, facing, self._counts, self.faces, self.draw_calls)
 
     def find_faces(self, device: Device, scene: Scene, light: Light, pictures: PictureTextures) -> None:
         """Find the faces of a light's shadow volumes, and how many of the volumes hold the scene's eye."""
@@ -117,18 +122,23 @@ class ShadowCasters:
             buffer.bind_to_storage_buffer(binding)
         self._counts.write(bytes(PART * self._parts))
         # three corners for all of the picture, once; no volumes
-        self.draw_call.write(struct.pack("4Ii", 3, 1, 0, 0, 0))
+        # three corners for all of the picture, once; no volumes
+        self.draw_calls.write(struct.pack("4Ii", 3, 1, 0, 0, 0))
+        camera = scene.camera
         defines = light_defines(scene, light)
         uniforms = light_uniforms(scene, light, pictures) | {
-            "eye": tuple(scene.camera.origin),
+            "eye": tuple(camera.origin),
+            "viewing_axis": tuple(camera.to_world[:3, 2]),
+            "near": camera.near,
             "triangle_count": self._triangles,
             "edge_count": self._edges,
             "part_count": self._parts,
         }
-        for name, count in (("triangles", self._triangles), ("edges", max(self._edges, self._parts))):
-            program = device.compute(f"shadow_faces/{name}.comp.glsl", defines)
+        numbers = max(self._edges + self._triangles, self._parts)
+        for name, count, group in (("triangles", self._triangles, GROUP), ("faces", numbers, DRAWN_GROUP)):
+            program = device.compute(f"shadow_faces/{name}.comp.glsl", defines | {"GROUP": group})
             set_uniforms(program, uniforms)
-            groups = max(-(-count // GROUP), 1)
+            groups = max(-(-count // group), 1)
             program.run(min(groups, MOST_GROUPS), -(-groups // MOST_GROUPS))
             device.context.memory_barrier()
 

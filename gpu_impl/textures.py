@@ -37,6 +37,7 @@ class PictureTextures:
                 )
             texture = self._device.texture((width, height), 3)
             texture.write(picture.pixels.tobytes())
+            self._device.keep(texture)
             self._textures[id(picture)] = texture
             self._kept.append(picture)
         self._textures[id(picture)].use(unit)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -10,18 +9,12 @@ import numpy as np
 from experiments.attribution.coalitions import PARTS
 from experiments.attribution.measurement import Attribution
 from experiments.attribution.split import Share
-from experiments.provenance import TECHNIQUE_KEYS
+from experiments.provenance import describe_technique
 
 # what is no part, and stands in the same tables
 WHOLE, TOGETHER, REMAINS = "whole", "parts together", "remains"
 NUMBERS = ("squared_error", "standard_error", "of_parts", "of_mean", "image_mean", "rms")
 Row = dict[str, Any]
-
-
-def settings(found: Attribution) -> dict[str, Any]:
-    """The technique's fields, called as in all tables of results."""
-    technique = found.technique
-    return {TECHNIQUE_KEYS.get(field.name, field.name): getattr(technique, field.name) for field in fields(technique)}
 
 
 def shares(found: Attribution) -> dict[str, Share]:
@@ -47,7 +40,7 @@ def rows(found: Attribution) -> list[Row]:
     rms                              root mean square of the signed map over the reference's mean
     """
     mean = float(np.mean(found.reference))
-    about, there, lines = settings(found), shares(found), []
+    about, there, lines = describe_technique(found.technique), shares(found), []
     for name in (WHOLE, *PARTS, TOGETHER, REMAINS):
         numbers: Row = dict.fromkeys(NUMBERS)
         if name in there:
@@ -73,7 +66,7 @@ def as_object(found: Attribution) -> dict[str, Any]:
         " + ".join(part for part in PARTS if part in coalition): value for coalition, value in found.split.left.items()
     }
     return {
-        "technique": settings(found),
+        "technique": describe_technique(found.technique),
         **numbers,
         "left_out": found.parts.left_out,
         "squared_error_with_exact": left,

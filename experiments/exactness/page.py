@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-from experiments.exactness.study import GOAL, PARTS, Case
+from experiments.exactness.study import GOAL, Case
 from experiments.exactness.table import HEADINGS, MEANING, cells, verdict
 from experiments.markdown import table
 from experiments.pages import made_by
@@ -28,9 +28,7 @@ estimate with a relative standard error of {rel_error:.1%} that shares no ray wi
 image's mean, of which each may fail once in 10,000 times by chance.
 
 Doubling a map leaves half of the borders between its texels where they are: a shadow's edge within a quarter of a texel
-of one is told in the same wrong place twice. Where edges are parallel to texels that holds for whole surfaces of them,
-and such pixels count as stable. Maps of {maps} sizes, from {smallest:.0%} of the largest up, have their borders in as
-many places, and the mean of their pictures shows how much of the error is that.
+of one is told in the same wrong place twice, and its pixels count as stable. With moved borders they do not.
 """
 
 
@@ -55,8 +53,6 @@ def write_page(
         table=table(HEADINGS, [cells(case) for case in cases]),
         meaning=MEANING,
         rel_error=GOAL.rel_error,
-        maps=len(PARTS),
-        smallest=min(PARTS),
     )
     with replacing(folder / "README.md") as beside:
         beside.write_text(text, encoding="utf-8")

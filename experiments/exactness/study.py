@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from experiments.provenance import describe_frame, describe_reference, describe_
 from experiments.renderers import open_renderer
 from gpu_impl.passes.shadow_map import tile_count
 from gpu_impl.recording import Pieces
-from gpu_impl.techniques import Technique, find_technique
+from gpu_impl.techniques import find_technique
 from reference.agreement.comparison import Comparison, compare
 from reference.agreement.measured import exact_witness, witness
 from reference.agreement.unseen import Unseen, unseen_variance
@@ -25,9 +25,10 @@ EXACT, GIVEN = "exact+quadrature", "given+quadrature"
 # Texels on a side of a tile before they double: twice six tiles of 1,344 side by side, or one of 8,192, are as wide as
 # llvmpipe lets a texture be, or nearly (16,384).
 CUBE, FLAT = 1344, 8192
-# Maps of these parts of the doubled one's texels have their borders in other places, each in its own. Doubling leaves
-# half of all borders where they are: one that lies within a quarter of a texel of a shadow's edge stays the nearest.
-PARTS = tuple(1 - 0.0187 * step for step in range(16))
+# Doubling leaves half of all borders between texels where they are: one that lies within a quarter of a texel of a
+# shadow's edge stays the nearest, and tells it in the same wrong place twice. A map with so small a part of its texels
+# less has its borders elsewhere, and is as coarse.
+LESS = 1 / 256
 # of a pixel's lit length: whether the map's doubling still changes it
 STABLE = 1e-3
 # what is asked of stable pixels, and of how many of them; and how many pixels have to be stable
@@ -71,7 +72,7 @@ class Case:
     scene : str
     shadow_map : int             texels on a side of a tile; before, half as many
     image_mean : float           relative error of `exact`
-    one_map, many_maps : Stable  with `shadow_map` texels, and the mean of pictures over `PARTS` of them
+    doubled, moved : Stable      where doubling changes nothing, and where doubling a map of `LESS` texels less does not
     given : Comparison           with the sampled reference
     reads, milliseconds : float  of `exact` with `shadow_map` texels: a ray's reads of the map and its pyramid, and a
                                  frame [ms]
@@ -81,8 +82,8 @@ class Case:
     scene: str
     shadow_map: int
     image_mean: float
-    one_map: Stable
-    many_maps: Stable
+    doubled: Stable
+    moved: Stable
     given: Comparison
     reads: float
     milliseconds: float
@@ -142,32 +143,26 @@ def _case(scene: Scene, truth: Reference, sampled: Reference, before: int) -> Ca
     def error(picture: NDArray[np.floating]) -> NDArray[np.float64]:
         return np.abs(picture - expected).max(axis=-1)[lit] / bright[lit]
 
-    coarse, fine = (find_technique(EXACT, shadow_map=size) for size in (before, 2 * before))
+    fine, *coarse = (find_technique(EXACT, shadow_map=size) for size in (2 * before, before, round((1 - LESS) * before)))
     with open_renderer(scene) as renderer:
         frame, given = (renderer.render(technique) for technique in (fine, find_technique(GIVEN)))
-        lengths = [lit_length(renderer.record(technique))[lit.ravel()] for technique in (coarse, fine)]
+        length, *lengths = (lit_length(renderer.record(technique))[lit.ravel()] for technique in (fine, *coarse))
         reads = float(renderer.counts(fine)["shadow_map_reads"].mean())
         milliseconds = renderer.milliseconds(fine, frames=3)
-    longer = np.maximum(*lengths)
-    # a ray that both find dark does not change
-    change = np.abs(lengths[1] - lengths[0]) / np.where(longer > 0, longer, 1.0)
+
+    def change(before: NDArray[np.float64]) -> NDArray[np.float64]:
+        longer = np.maximum(before, length)
+        # a ray that both find dark does not change
+        return np.abs(length - before) / np.where(longer > 0, longer, 1.0)
+
     return Case(
         scene.name,
         2 * before,
         frame.scattering.mean(dtype=np.float64) / expected.mean() - 1,
-        Stable.among(change, error(frame.scattering)),
-        Stable.among(change, error(_mean_over_maps(scene, fine))),
+        *(Stable.among(change(one), error(frame.scattering)) for one in lengths),
         against_reference(scene, sampled, given.scattering, GIVEN),
         reads,
         milliseconds,
         {**describe_scene(scene), **describe_frame(frame), **describe_reference(sampled)},
     )
 
-
-def _mean_over_maps(scene: Scene, technique: Technique) -> NDArray[np.float64]:
-    """Airlight with maps of `PARTS` of the technique's texels, one after the other: together they would fill memory."""
-    total = np.zeros((scene.camera.height, scene.camera.width, 3))
-    for part in PARTS:
-        with open_renderer(scene) as renderer:
-            total += renderer.render(replace(technique, shadow_map=round(part * technique.shadow_map))).scattering
-    return total / len(PARTS)

@@ -97,7 +97,9 @@ def cases_of(suite: Suite) -> list[Case]:
                 raise InputError(
                     f"The case {case.name} stands in the suite twice: leave one out, or give its product another name."
                 )
-            raise InputError(f"Two cases have the same name, {case.name}: rename a product or a scene.")
+            raise InputError(
+                f"Two cases have the same name, {case.name}: rename a product or a scene, or your technique (`name`)."
+            )
     return list(cases.values())
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from experiments.benchmark.efficiency import quartiles
 from experiments.intervals import median_interval
-from experiments.provenance import TECHNIQUE_KEYS, describe_scene
+from experiments.provenance import describe_scene, describe_technique
 from experiments.technique_benchmark.budget import triangle_count
 from experiments.technique_benchmark.contenders import ERROR_LIMITS, FAST_ROWS, PAIRS, published_rate
 from experiments.technique_benchmark.measurement import Measured, Result
@@ -37,7 +37,7 @@ def rows(result: Result) -> list[Row]:
 
 
 def _numbers(result: Result, one: Measured) -> Row:
-    settings = {TECHNIQUE_KEYS.get(key, key): value for key, value in asdict(one.technique).items()}
+    settings = describe_technique(one.technique)
     if one.refusal or not one.metrics or not one.footprint:
         return {**settings, "refusal": one.refusal}
     low, middle, high = quartiles(one.times.milliseconds)

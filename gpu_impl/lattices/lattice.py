@@ -27,7 +27,7 @@ class LatticeKind:
     ----------
     source : str                   file below `shaders/`, or a path: where in the image each cell's ray goes
     what : str                     in a few words
-    reconstruction : str or None   the same, of the values at the image's pixels; None where `Technique.upsample` says how
+    reconstruction : str or None   of the values at the image's pixels; None where `Technique.upsample` says how
     size : callable                (camera, N) to the number of cells in x and in y
     uniforms : callable            (scene, light, size, N) to uniforms of both files
     """

@@ -19,6 +19,8 @@ from gpu_impl.visibilities.strategy import FogInputs, Supply
 
 # what a counting build counts, in the order of the channels of shaders/counting.glsl
 COUNTERS = ("pieces", "shadow_map_reads", "exponential_integrals", "exponentials")
+# of these, what airlight models do
+OF_MODELS = COUNTERS[2:]
 # binding of `phase_table` in phase/tabulated.glsl
 PHASE_TABLE = 3
 # of the loop by which scattering.frag.glsl notices that its loops are cut off
@@ -47,6 +49,7 @@ def add_scattering(
         "STEPS": technique.steps,
         "SHADOW_GIVEN": int(inputs.given is not None),
         "AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners),
+        "DEPTH_ONLY": int(model.depth_only),
         **strategy.defines,
         **supply.defines,
         **({"COUNTING": 1} if counts else {}),

@@ -22,7 +22,11 @@ void lit(float t0, float dt, float w) {
     result.a += 1.0;
 #if AIRLIGHT_AT_CORNERS == 1
     COUNT_PIECE;
-    result.rgb += w * angular(light, current_ray.o + (t0 + 0.5 * dt) * current_ray.d) * corner_airlight;
+    float middle = t0 + 0.5 * dt;
+    // by depth alone all of the cone is lit alike, as it is where the driver cuts pieces
+    vec3 share = DEPTH_ONLY == 1 ? vec3(the_cone.x < middle && middle < the_cone.y)
+                                 : angular(light, current_ray.o + middle * current_ray.d);
+    result.rgb += w * share * corner_airlight;
 #else
     if (CLIP_TO_CONE) {
         float begin = max(t0, the_cone.x), end = min(t0 + dt, the_cone.y);

@@ -11,14 +11,20 @@ uniform sampler2D shadow_map;
 uniform int tile_size;      // texels on a side
 uniform float texel_slope;  // width of a texel at distance 1, or anywhere in parallel light
 uniform mat4 tile_matrix;   // world to clip space of the one tile
+uniform mat3 map_frame;     // axes of the cube
 
-// Where in the map a direction is looked up: position in its tile, -1 to 1, and the number of the tile (shadow_map.py).
-vec3 tile_position(vec3 from_light) {
-    vec3 a = abs(from_light), d = from_light;
+vec3 in_map_frame(vec3 direction) { return direction * map_frame; }
+
+// Where in a cube a direction in its frame is looked up: position in its tile, -1 to 1, and the number of the tile
+// (shadow_map.py).
+vec3 position_in_cube(vec3 d) {
+    vec3 a = abs(d);
     if (a.x >= a.y && a.x >= a.z) return d.x > 0.0 ? vec3(d.zy / a.x, 0.0) : vec3(-d.z / a.x, d.y / a.x, 1.0);
     if (a.y >= a.z) return d.y > 0.0 ? vec3(d.xz / a.y, 2.0) : vec3(-d.x / a.y, d.z / a.y, 3.0);
     return d.z > 0.0 ? vec3(-d.x / a.z, d.y / a.z, 4.0) : vec3(d.xy / a.z, 5.0);
 }
+
+vec3 tile_position(vec3 from_light) { return position_in_cube(in_map_frame(from_light)); }
 
 // One of the rows of tile_matrix without its translation: a tile's x, y and viewing axis.
 vec3 tile_row(int i) { return vec3(tile_matrix[0][i], tile_matrix[1][i], tile_matrix[2][i]); }

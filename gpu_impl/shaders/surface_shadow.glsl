@@ -10,12 +10,9 @@ vec3 texel_direction(vec3 centre) {
     return z / dot(z, z) + centre.x * x / dot(x, x) + centre.y * y / dot(y, y);
 #else
     float s = centre.x, t = centre.y;
-    int face = int(centre.z);
-    if (face == 0) return vec3(1.0, t, s);
-    if (face == 1) return vec3(-1.0, t, -s);
-    if (face == 2) return vec3(s, 1.0, t);
-    if (face == 3) return vec3(-s, -1.0, t);
-    return face == 4 ? vec3(-s, t, 1.0) : vec3(s, t, -1.0);
+    vec3 ways[6] = vec3[6](vec3(1.0, t, s), vec3(-1.0, t, -s), vec3(s, 1.0, t), vec3(-s, -1.0, t), vec3(-s, t, 1.0),
+                           vec3(s, t, -1.0));
+    return map_frame * ways[int(centre.z)];
 #endif
 }
 

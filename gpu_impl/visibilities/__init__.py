@@ -67,7 +67,7 @@ VISIBILITIES = {
     ),
     "exact": Visibility(
         "visibility/exact.glsl",
-        "every texel of the shadow map that the ray crosses, by a pyramid of its least and largest distances: a control",
+        "every texel of the shadow map that the ray crosses, by a pyramid of least and largest distances: a control",
         supply=ShadowPyramid,
         asks_points=False,
     ),

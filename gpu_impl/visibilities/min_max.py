@@ -47,8 +47,8 @@ def column_count(inputs: FogInputs) -> int:
 class MinMax(Supply):
     """A light's rows and their trees in a storage buffer.
 
-    A row serves each plane of the lattice where that is made of epipolar planes too; otherwise there is one for each
-    pixel of the image's border.
+    Where the lattice is made of epipolar planes too, whoever wrote it, the rows are its planes: the shader has one set
+    of their uniforms. Otherwise there is a row for each pixel of the image's border.
 
     Raises
     ------
@@ -57,11 +57,11 @@ class MinMax(Supply):
     """
 
     def __init__(self, inputs: FogInputs) -> None:
-        on_slices = inputs.technique.lattice == "epipolar"
-        rows = inputs.lattice.size[1] if on_slices else border_pixels(inputs.scene.camera, 1)
-        planes, columns = EpipolarPlanes.of(inputs.scene.camera, inputs.light, rows), column_count(inputs)
-        self._uniforms = planes.uniforms | {"columns": columns}
-        self.buffer = _trees(inputs, rows, columns, self._uniforms) if inputs.given is None else None
+        camera, planes, columns = inputs.scene.camera, inputs.lattice.uniforms, column_count(inputs)
+        if "plane_count" not in planes:
+            planes = EpipolarPlanes.of(camera, inputs.light, border_pixels(camera, 1)).uniforms
+        self._uniforms = planes | {"columns": columns}
+        self.buffer = _trees(inputs, planes["plane_count"], columns, self._uniforms) if inputs.given is None else None
 
     def bind(self, program: Any) -> None:
         """Bind the trees and set the planes' uniforms."""

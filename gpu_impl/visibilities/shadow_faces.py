@@ -16,7 +16,7 @@ from scenes.errors import InputError
 from scenes.model import Array, Camera
 
 # bindings of the two storage blocks of shadow_faces.vert.glsl, and how many those are
-FACES, DRAW, VERTEX_BLOCKS = 4, 5, 2
+FACES, DRAWS, VERTEX_BLOCKS = 4, 5, 2
 # Nearer to the eye than this share of the near plane's distance a face is clipped away. The eye's volumes are counted
 # at the eye itself, so that a face in between would be missed; OpenGL needs some distance to divide by.
 NEAREST = 2.0**-10
@@ -40,13 +40,17 @@ class ShadowFaces(Supply):
         self._casters = inputs.kept.get("shadow casters", lambda: ShadowCasters(device.context, scene))
         with inputs.clock.time_pass("shadow polygons"):
             self._casters.find_faces(device, scene, inputs.light, inputs.pictures)
-        self._matrix = _world_to_lattice(scene.camera, inputs.technique.downsample)
+        camera = scene.camera
+        self._projection = {
+            "world_to_lattice": _world_to_lattice(camera, inputs.technique.downsample),
+            "nearest": NEAREST * camera.near,
+        }
 
     def bind(self, program: Any) -> None:
         """Bind both buffers, and set the faces' projection."""
         self._casters.faces.bind_to_storage_buffer(FACES)
-        self._casters.draw_call.bind_to_storage_buffer(DRAW)
-        set_uniforms(program, {"world_to_lattice": self._matrix})
+        self._casters.draw_calls.bind_to_storage_buffer(DRAWS)
+        set_uniforms(program, self._projection)
 
     def draw(self, device: Device, program: Any, targets: tuple[Any, ...], add: bool) -> None:
         """Draw the whole ray's piece and those behind all faces, added up."""
@@ -58,7 +62,7 @@ class ShadowFaces(Supply):
         array = context.vertex_array(program, [])
         context.enable(context.BLEND)
         context.blend_func = context.ONE, context.ONE
-        array.render_indirect(self._casters.draw_call, context.TRIANGLES, count=1)
+        array.render_indirect(self._casters.draw_calls, context.TRIANGLES, count=self._casters.draws)
         context.disable(context.BLEND)
         array.release()
         target.release()

@@ -21,7 +21,6 @@ SMALL = ("--size", "24", "24", "--shadow-map", "128")
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "GOAL", Goal(rel_error=0.05))
-    monkeypatch.setattr(study, "PARTS", (1.0, 0.9))
 
 
 def test_the_command_says_what_holds(tmp_path) -> None:

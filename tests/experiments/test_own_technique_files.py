@@ -12,6 +12,8 @@ import pytest
 from registries import restored_registries
 
 from experiments.exr import read_exr, write_exr
+from experiments.provenance import describe_own_files, describe_technique
+from gpu_impl.techniques import find_technique
 
 TOML = 'name = "Mine"\nvisibility = "march.glsl"\nairlight = "riemann"\n\n[settings]\nsteps = 9\n'
 MARCH = """#include "shadow_lookup.glsl"
@@ -119,8 +121,36 @@ def test_a_suite_names_it_from_its_own_folder_and_a_changed_file_is_another_run(
     assert (
         json.loads(read_exr(folder / "empty-Mine-steps-9.exr")[1]["technique_texts"])[str(own / "march.glsl")] == MARCH
     )
+    # once, and nowhere else beside the pictures
+    texts = {str(own / name): (own / name).read_text() for name in ("mine.toml", "march.glsl", "share.glsl")}
+    assert json.loads((folder / "run.json").read_text())["own_techniques"] == {str(own / "mine.toml"): texts}
+    assert not {"technique_file", "technique_texts"} & set(table.columns)
+    for name in ("results.csv", "results.parquet", "report.html", "cases/empty-Mine-steps-9.json"):
+        told = (folder / name).read_bytes()
+        assert b"void visibility" not in told, name
+        assert str(own).encode() not in told, name
     # the same cases by name, of another technique
     (own / "share.glsl").write_text("#define SHARE 0.0\n")
     result = airlight("run", tmp_path / "suite.toml", "--resume", folder)
     assert result.code == 2
     assert "is a run of other cases" in result.err
+
+
+def test_two_techniques_of_one_name_are_told_apart_by_their_files(airlight, own: Path) -> None:
+    (own / "other.toml").write_text(TOML.replace("riemann", "quadrature"))
+    suite = SUITE.replace('own/mine.toml", steps = 12', 'own/other.toml"')
+    (own.parent / "suite.toml").write_text(suite)
+    result = airlight("run", own.parent / "suite.toml", "--out", own.parent / "runs")
+    assert result.code == 2
+    assert "Two cases have the same name, empty-Mine" in result.err
+    assert "or your technique (`name`)." in result.err
+
+
+def test_what_tables_say_of_a_technique_holds_no_file(own: Path) -> None:
+    technique = find_technique(str(own / "mine.toml"))
+    told = describe_technique(technique)
+    assert told["technique"] == "Mine"
+    assert told["steps"] == 9
+    assert str(own) not in str(told)
+    assert describe_own_files(technique) == {"technique_file": technique.file, "technique_texts": technique.texts}
+    assert describe_own_files(find_technique("Weng2010")) == {}

@@ -73,6 +73,8 @@ PLAIN = {
     "SPOT": 0,
     "SPOT_TEXTURE": 0,
     "SPECULAR": 0,
+    "GROUP": 64,
+    "DEPTH_ONLY": 0,
     "PICTURE": 0,
     "CULL": 0,
     "SHADOW_GIVEN": 0,

@@ -33,10 +33,9 @@ def silhouette(scene: Scene) -> set[frozenset]:
     with Renderer(scene) as renderer:
         technique = find_technique("lit_intervals:printed+quadrature", steps=1, shadow_map=8)
         renderer.render(technique)
-        corners = np.frombuffer(renderer.passes._adjacency.draw_call.read(), np.uint32)[0]
-        found = np.frombuffer(renderer.passes._adjacency.silhouette.read(), np.uint32).reshape(-1, 4)[
-            : corners // 6, :2
-        ]
+        adjacency = renderer.passes.kept.get("adjacency", dict)
+        corners = np.frombuffer(adjacency.draw_call.read(), np.uint32)[0]
+        found = np.frombuffer(adjacency.silhouette.read(), np.uint32).reshape(-1, 4)[: corners // 6, :2]
     return {frozenset(map(tuple, vertices[pair].tolist())) for pair in found}
 
 

@@ -56,7 +56,7 @@ def upsampled(name: str, camera: Camera, seen: np.ndarray, lattice: np.ndarray, 
     surface.write(np.zeros((*size, 4), np.float32).tobytes())
     airlight.write(lattice.tobytes())
     technique = find_technique("Weng2010", downsample=step, upsample=name)
-    combine(device, (attenuated, result), technique, scene, GBuffer(found, material, None), surface, airlight)
+    combine(device, (attenuated, result), technique, scene, GBuffer(found, material, None), surface, airlight, step)
     image = np.frombuffer(result.read(), np.float32).reshape(camera.height, camera.width, 4)
     device.give_back(found, material, surface, attenuated, result, airlight)
     device.release()

@@ -13,10 +13,13 @@ layout(std430, binding = 4) restrict buffer Facing { int facing[]; };
 // away from it; and how many more the line from the eye passes from inside than from outside behind the light.
 struct Part { int towards, away, around_light; };
 layout(std430, binding = 5) restrict buffer Parts { Part parts[]; };
-// a face's two vertices on the ground; a.w: how many volumes begin where one goes through it from its front
-struct Face { vec4 a, b; };
+// A face's two vertices on the ground, or a cap's three, whose c.w is 1; a.w: how many volumes begin where one goes through
+// it from its front.
+struct Face { vec4 a, b, c; };
 layout(std430, binding = 6) writeonly restrict buffer Faces { Face faces[]; };
-// what glDrawArraysIndirect takes, and how many volumes the eye is in
-layout(std430, binding = 7) restrict buffer Draw { uint corners, instances, first, base; int inside; };
+// What glMultiDrawArraysIndirect takes: all of the picture, and the faces of each work group. Behind each is room for a
+// number; the first has how many volumes the eye is in.
+struct Draw { uint corners, instances, first, base; int inside; };
+layout(std430, binding = 7) restrict buffer Draws { Draw draws[]; };
 
 uniform Light light;

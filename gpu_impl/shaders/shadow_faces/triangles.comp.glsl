@@ -3,7 +3,7 @@
 // The eye is in a triangle's volume where the way to the light meets the triangle. The coordinates are float32 and all is
 // computed in double, so that neighbours agree on whose side of their edge the way passes.
 #include "shadow_faces/buffers.glsl"
-layout(local_size_x = 128) in;
+layout(local_size_x = GROUP) in;
 
 uniform vec3 eye;
 uniform uint triangle_count;

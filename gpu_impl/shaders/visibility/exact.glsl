@@ -14,6 +14,15 @@
 
 const float FARTHEST = 1e18;   // its square is finite in float32
 
+// A ray through the light has no direction from it there. It is led round it by a hair, which costs no length that float32
+// can tell, and what rounding leaves of `nearest`, a share of the light's distance, is such a ray's.
+const float BESIDE = 2e-7, HAIR = 1e-12;
+
+// A direction at right angles to d.
+vec3 across(vec3 d) {
+    return normalize(abs(d.x) < 0.6 ? vec3(0.0, -d.z, d.y) : vec3(d.z, 0.0, -d.x));
+}
+
 // How the distance to the light grows on both sides of the nearest place: the distance there, and `aside`, how far it is
 // from the light's projection, which is 0 unless that lies outside the range; in parallel light the cosine between the two
 // directions.
@@ -45,6 +54,7 @@ void visibility(Ray ray, Light light) {
 #else
     float t_h = dot(to_light, ray.d), t = clamp(t_h, range.x, range.y);
     vec3 nearest = ray.d * t - to_light;
+    if (length(nearest) <= BESIDE * length(to_light)) nearest = HAIR * across(ray.d);
     Approach approach = Approach(length(nearest), abs(t - t_h));
 #endif
     float along = range.x - t, end = range.y - t;

@@ -21,7 +21,9 @@ MapLine line_in_tile(int tile, vec3 nearest, vec3 d, Light light) {
     vec3 from = DIRECTIONAL == 1 ? (tile_matrix * vec4(light.position, 1.0)).xyw : vec3(0.0);
     return MapLine(from + vec3(dot(x, nearest), dot(y, nearest), dot(w, nearest)), vec3(dot(x, d), dot(y, d), dot(w, d)));
 #else
-    // the axes of tile_position()
+    // the axes of position_in_cube()
+    nearest = in_map_frame(nearest);
+    d = in_map_frame(d);
     if (tile == 0) return MapLine(nearest.zyx, d.zyx);
     if (tile == 1) return MapLine(vec3(-nearest.z, nearest.y, -nearest.x), vec3(-d.z, d.y, -d.x));
     if (tile == 2) return MapLine(nearest.xzy, d.xzy);
@@ -78,7 +80,7 @@ Stretch first_stretch(vec3 nearest, vec3 d, Light light, float along, float end)
 #elif TILES == 1
     int tile = 0;
 #else
-    int tile = int(tile_position(nearest + along * d).z);
+    int tile = int(position_in_cube(in_map_frame(nearest) + along * in_map_frame(d)).z);
 #endif
     return stretch_in(tile, nearest, d, light, along, end);
 }
