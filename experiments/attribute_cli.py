@@ -58,6 +58,7 @@ def attribute(
     if scene is None:
         raise InputError("attribute needs a SCENE, or --planted.")
     import airlight
+    from experiments.attribution.measurement import check_size
     from experiments.attribution.page import TITLE
     from experiments.attribution.report import run_attribution
     from experiments.console import warn
@@ -77,6 +78,7 @@ def attribute(
     chosen = [find_technique(name, **settings) for name in technique or TECHNIQUES]
     prepare_page(out, TITLE)
     loaded = airlight.load(scene, size, **parse_parameters(parameter))
+    check_size(loaded)
     announce_scene(loaded)
     announce_variant()
     for one in chosen:
@@ -119,8 +121,12 @@ def _plant() -> None:
             status.update(one.name)
             outcomes.append(try_planted(one))
     console.print(planted_table(outcomes))
-    missed = [outcome.planted.name for outcome in outcomes if outcome.own_share <= LEAST]
+    unnoticed = [outcome.planted.name for outcome in outcomes if not outcome.is_noticed]
+    if unnoticed:
+        warn(f"Hardly changes the picture, so that no part can be told: {', '.join(unnoticed)}.")
+    missed = [outcome.planted.name for outcome in outcomes if outcome.is_noticed and outcome.own_share <= LEAST]
     if missed:
         warn(f"Not told for what it is: {', '.join(missed)}.")
+    if unnoticed or missed:
         raise typer.Exit(1)
     say(f"All {len(outcomes)} planted errors show up in their own part at more than {LEAST:.0%}.")

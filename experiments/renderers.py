@@ -15,9 +15,17 @@ def open_renderer(scene: Scene, device: Device | None = None) -> Renderer:
     return Renderer(scene, device, find_lit)
 
 
-def find_lit(scene: Scene, number: int, positions: Array) -> Found:
-    """Find lit intervals of one light on the rays through positions in the image; see `gpu_impl.given.Finder`."""
+def find_lit(scene: Scene, number: int, positions: Array, ends: Array) -> Found:
+    """Find lit intervals of one light on the rays through positions in the image; see `gpu_impl.given.Finder`.
+
+    The rays end where Mitsuba's do, whatever surface OpenGL sees there.
+    """
+    return find_lit_up_to(scene, number, positions, None)
+
+
+def find_lit_up_to(scene: Scene, number: int, positions: Array, ends: Array | None) -> Found:
+    """Find the same on rays that end where OpenGL's do, or where Mitsuba's do."""
     from reference.deterministic import lit_intervals
 
-    found = lit_intervals(replace(scene, lights=(scene.lights[number],)), positions)
+    found = lit_intervals(replace(scene, lights=(scene.lights[number],)), positions, ends)
     return Found(found.offsets, found.begin, found.end)

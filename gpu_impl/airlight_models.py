@@ -63,6 +63,7 @@ class AirlightShader:
     generated : callable          texts of the includes that are computed for a phase function, by name
     table : callable or None      float32 values (rows, columns[, components]) for a phase function, which the shader
                                   reads as `uniform sampler2D airlight_table`: texture() interpolates, texelFetch() does not
+    point_samples : bool          whether it samples points of a piece, so that it is as accurate as its pieces are short
     depth_only : bool             whether it takes the light to be all along the ray as it is at the eye's place, so that
                                   nothing of what a spot sends in each direction counts but where its cone ends
     """
@@ -73,6 +74,7 @@ class AirlightShader:
     any_light: bool = True
     generated: Callable[[Phase], Mapping[str, str]] = nothing
     table: Callable[[Phase], NDArray[np.float32]] | None = None
+    point_samples: bool = False
     depth_only: bool = False
 
 
@@ -94,10 +96,7 @@ def _sun2005(side: int) -> AirlightShader:
 
 # names are those of analytic.MODELS where it has the model, all but `quadrature`, which is its `quadrature_float32`
 AIRLIGHT_MODELS = {
-    "riemann": AirlightShader("airlight/riemann.glsl", "one point sample a piece (Nishita 1987)"),
-    "riemann:steps": AirlightShader(
-        "airlight/riemann_steps.glsl", "point samples as dense as a march of so many steps over the ray has them"
-    ),
+    "riemann": AirlightShader("airlight/riemann.glsl", "one point sample a piece (Nishita 1987)", point_samples=True),
     "weng2010": _closed_form("weng2010", "closed form, repaired, its exponents merged: two complex Ei", ISOTROPIC),
     "weng2010:printed": _closed_form(
         "weng2010_printed", "sections 4.3 and 4.4 as printed", POLYNOMIAL_PHASES, _printed

@@ -204,8 +204,10 @@ class FramePasses:
         """Ask for the lit intervals of the lattice's rays, once for this eye and this light."""
         key = technique.lattice, technique.downsample, number
         if key not in self._given:
-            rays = self.rays(technique, view, number)
-            found = self._find_lit(self.scene, number, rays[..., :2].astype(np.float64))
+            rays = self.rays(technique, view, number).astype(np.float64)
+            # past its beginning, where there is fog
+            ends = rays[..., 2] + np.maximum(rays[..., 3], 0)
+            found = self._find_lit(self.scene, number, rays[..., :2], ends)
             self._given[key] = GivenIntervals(self.device, found, rays.shape[1::-1])
         return self._given[key]
 

@@ -37,11 +37,12 @@ class Found:
     end: Array
 
 
-# scene, which of its lights, positions in the image (h, w, 2) [pixel] -> what is lit of the rays through them
-Finder = Callable[[Scene, int, Array], Found]
+# scene, which of its lights, positions in the image (h, w, 2) [pixel], where OpenGL has the rays through them end (h, w)
+# [scene unit along `Camera.rays`] -> what is lit of those rays; a finder may know their ends better
+Finder = Callable[[Scene, int, Array, Array], Found]
 
 
-def find_none(scene: Scene, number: int, positions: Array) -> Found:
+def find_none(scene: Scene, number: int, positions: Array, ends: Array) -> Found:
     """Stand in where nobody can find any.
 
     Raises

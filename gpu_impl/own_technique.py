@@ -144,7 +144,7 @@ def _airlight(part: str | AirlightPart, folder: Path, files: OwnFiles) -> str:
         return part
     source = files.shader(_path(folder, part.file))
     like = AIRLIGHT_MODELS[part.supply] if part.supply else AirlightShader(source, part.what)
-    said = part.model_dump(include={"phases", "any_light"}, exclude_none=True)
+    said = part.model_dump(include={"phases", "any_light", "point_samples"}, exclude_none=True)
     if "phases" in said:
         said["phases"] = tuple(said["phases"])
     AIRLIGHT_MODELS[_name(part, source)] = replace(like, source=source, what=part.what, **said)

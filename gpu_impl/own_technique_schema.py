@@ -102,11 +102,14 @@ class AirlightPart(Part):
     phases : list      names of the phase functions that it takes; left out, those of `supply`, or all
     any_light : bool   whether it takes directional lights, and lights outside a bounded medium; left out, as with
                        `supply`, or yes
+    point_samples : bool    whether it samples points of a piece, so that it is as accurate as its pieces are short;
+                            left out, as with `supply`, or no
     """
 
     supply: AirlightName | None = None
     phases: Annotated[list[PhaseName], Field(min_length=1)] | None = None
     any_light: YesOrNo | None = None
+    point_samples: YesOrNo | None = None
 
 
 class LatticePart(Part):

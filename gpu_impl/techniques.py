@@ -154,7 +154,7 @@ def _is_close(light: Light, scene: Scene) -> bool:
     """Whether a light is nearer to where rays begin than 1 / CLOSE of how far they see."""
     if light.kind == "directional":
         return False
-    far = min(scene.camera.far, 1 / float(np.mean(scene.medium.sigma_t)))
+    far = 1 / max(float(np.mean(scene.medium.sigma_t)), 1 / scene.camera.far)
     away = np.linalg.norm(scene.camera.rays()[0] - light.position, axis=-1)
     return bool(np.median(away) < far / CLOSE)
 

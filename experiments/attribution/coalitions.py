@@ -10,17 +10,21 @@ The exact control of each part:
 - float32: the pieces that the visibility reported, evaluated and summed in float64 (float64.py). Where a strategy
   places its pieces is computed in float32 all the same, and stays the visibility's.
 
-A model that takes one sample a piece is as accurate as the pieces are short, and would not be itself on those of an
-exact visibility, which go from one shadow to the next: there it samples them in the technique's steps
-(`riemann:steps`).
+A model that samples points is as accurate as the pieces are short, and would not be itself on those of an exact
+visibility, which go from one shadow to the next: there it gets them in the technique's steps (`exact:steps` and
+`given:steps`).
+
+Rays end where OpenGL has them end, those of the reference too (pictures.py). Where it sees another surface than the
+reference does, at silhouettes, no part is charged with it: it stands in what remains.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from experiments.attribution.float64 import POINT_SAMPLE, POINT_SAMPLES, why_no_twin
+from experiments.attribution.float64 import why_no_twin
 from experiments.attribution.shapley import Coalition
+from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.techniques import Technique
 from gpu_impl.visibilities import VISIBILITIES
 from scenes.model import Scene
@@ -34,6 +38,8 @@ MODEL, VISIBILITY, SHADOW_MAP, LATTICE, FLOAT32 = PARTS = (
 )
 # the exact controls
 EXACT_MODEL, EXACT_VISIBILITY, GIVEN_VISIBILITY, EVERY_PIXEL = "quadrature", "exact", "given", "grid"
+# the variant of an exact visibility that reports its pieces cut into the technique's steps
+IN_STEPS = ":steps"
 
 
 @dataclass(frozen=True)
@@ -94,8 +100,8 @@ def replaced(technique: Technique, coalition: Coalition) -> Technique:
         changes["visibility"] = EXACT_VISIBILITY
     elif SHADOW_MAP in coalition:
         changes["shadow_source"] = "rays"
-    if technique.airlight == POINT_SAMPLE and VISIBILITY in coalition and MODEL not in coalition:
-        changes["airlight"] = POINT_SAMPLES
+    if AIRLIGHT_MODELS[technique.airlight].point_samples and VISIBILITY in coalition and MODEL not in coalition:
+        changes["visibility"] = f"{changes['visibility']}{IN_STEPS}"
     if not changes:
         return technique
     cell = replace(technique, **changes)  # type: ignore[arg-type]

@@ -3,19 +3,20 @@
 Each airlight model has a twin: `analytic` has the closed forms and tables under the shader's name. For `quadrature` it
 is the integral itself, so that what the shader's rule leaves counts as rounding too (5e-7, see
 `analytic.models.quadrature_float32`, and up to 2e-4 of the brightest pixel where it meets the kink at a soft spot's
-beam). For `riemann` it is the point sample, for `riemann:steps` that of pieces cut into steps; these three take any
-light and any body of fog, by the reference's float64 density.
+beam). For `riemann` it is the point sample, for `depth_fog` the fog whose source is that at the eye's place; these
+three take any light and any body of fog, by the reference's float64 density.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import MODELS, airlight
+from analytic.models.depth_fog import depth_fog
 from analytic.phase import Phase
 from reference.deterministic.kinks import Stretches
 from reference.deterministic.piece_airlight import piece_airlight
@@ -25,7 +26,6 @@ from scenes.model import Light, Scene
 
 # pieces at once: the quadrature holds some hundred numbers of each
 CHUNK = 1 << 16
-POINT_SAMPLE, POINT_SAMPLES = "riemann", "riemann:steps"
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ class Pieces:
             yield Pieces(*(getattr(self, part.name)[first : first + CHUNK] for part in fields(self)))
 
     def in_steps(self, rays: Rays, steps: int) -> Pieces:
-        """Cut into equal parts no longer than one of so many steps over the ray; see airlight/riemann_steps.glsl."""
+        """Cut into equal parts no longer than one of so many steps over the ray; see shaders/scattering.frag.glsl."""
         whole = (rays.fog_end - rays.fog_begin)[self.ray]
         # the shader's allowance for rounding
         parts = np.maximum(np.ceil(self.length * steps / whole - 0.01), 1).astype(np.intp)
@@ -69,17 +69,16 @@ def why_no_twin(model: str, phase: Phase) -> str:
     if model == "weng2010:printed" and phase.name == "rayleigh":
         # chapter 5 prints Rayleigh's function 4 pi times too large, and the shader has it so
         return "the shader has the phase function of chapter 5 as printed, and its float64 twin the normalised one"
-    return "" if model in (*_DENSITIES, POINT_SAMPLES, *MODELS) else f"`{model}` has no float64 twin in analytic.MODELS"
+    return "" if model in (*_DENSITIES, *MODELS) else f"`{model}` has no float64 twin in analytic.MODELS"
 
 
-def airlight_of_pieces(scene: Scene, light: Light, model: str, steps: int, rays: Rays, pieces: Pieces) -> Array:
+def airlight_of_pieces(scene: Scene, light: Light, model: str, rays: Rays, pieces: Pieces) -> Array:
     """Airlight of one light, summed over the pieces of each ray.
 
     Parameters
     ----------
     light : Light     one of the scene's
     model : str       one of `gpu_impl.airlight_models`, for which `why_no_twin` has no reason
-    steps : int       of the technique over a whole ray
     rays : Rays       their fog begins where the eye's leg does, and ends where the technique has it end
     pieces : Pieces   of those rays; where the model takes the light as even, inside its cone
 
@@ -88,8 +87,6 @@ def airlight_of_pieces(scene: Scene, light: Light, model: str, steps: int, rays:
     ndarray, (rays, 3)    [radiance]
     """
     scattered = ScatteredLight(scene, light, 1.0, _whole_way)
-    if model == POINT_SAMPLES:
-        model, pieces = POINT_SAMPLE, pieces.in_steps(rays, steps)
     evaluate = _DENSITIES.get(model) or _closed_form(model)
     total = np.zeros((len(rays), 3))
     for some in pieces.chunks():
@@ -123,6 +120,14 @@ def _point_sample(scene: Scene, light: Light, scattered: ScatteredLight, rays: R
     return sample
 
 
+def _depth_fog(scene: Scene, light: Light, scattered: ScatteredLight, rays: Rays, pieces: Pieces) -> Array:
+    # a spot's intensity in each direction does not count, and its cone has cut the pieces
+    even = replace(light, beam_width=light.cutoff_angle, texture=None)
+    at_eye = ScatteredLight(scene, even, 1.0, _whole_way).density(rays, rays.fog_begin[:, None])[:, 0]
+    begin = (pieces.begin - rays.fog_begin)[:, None]
+    return depth_fog(at_eye, np.broadcast_to(scene.medium.sigma_t, 3), begin, pieces.length[:, None])
+
+
 def _closed_form(model: str) -> Evaluate:
     def evaluate(scene: Scene, light: Light, scattered: ScatteredLight, rays: Rays, pieces: Pieces) -> Array:
         h, t_h = rays.beside(light)
@@ -136,4 +141,4 @@ def _closed_form(model: str) -> Evaluate:
     return evaluate
 
 
-_DENSITIES: dict[str, Evaluate] = {"quadrature": _quadrature, POINT_SAMPLE: _point_sample}
+_DENSITIES: dict[str, Evaluate] = {"quadrature": _quadrature, "riemann": _point_sample, "depth_fog": _depth_fog}

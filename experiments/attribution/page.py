@@ -6,14 +6,14 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 import polars
 
 from experiments.attribution.coalitions import PARTS
 from experiments.attribution.maps import draw_maps
 from experiments.attribution.measurement import Attribution
+from experiments.attribution.planted import SHADOW_MAPS
 from experiments.attribution.stacked_bars import draw_bars
-from experiments.attribution.tables import REMAINS, WHOLE, as_object, rows, shares, told_rms
+from experiments.attribution.tables import REMAINS, WHOLE, as_object, other_surfaces, percent, rows, shares, told_rms
 from experiments.markdown import table
 from experiments.pages import made_by
 from experiments.provenance import commit, describe_reference, describe_scene
@@ -27,8 +27,8 @@ PAGE = """# {title}
 
 {made} OpenGL on {renderer}.
 
-The scattering layer of {scene}, {phase} fog, {width} x {height} pixels, against a reference known to a relative
-standard error of {rel_error:.2%} (95th percentile of the lit pixels).
+The scattering layer of {scene}, {phase} fog, {width} x {height} pixels, against a {kind} reference known to a relative
+{error} of {rel_error:.2%} (95th percentile of the lit pixels).
 
 ![Share of each part in the mean squared error](bars.png)
 
@@ -37,8 +37,7 @@ standard error of {rel_error:.2%} (95th percentile of the lit pixels).
 Each technique is visibility x airlight model x lattice. Each part was replaced by its exact control, in all
 combinations, and the change of the mean squared error shared out as Shapley values: what a part's replacement takes
 away, averaged over every order of replacing them. The parts add up to what replacing all of them takes away, which is
-the 100 % here; with what remains then, they add up to the whole error. The noise of the reference is subtracted, and
-+- is the standard error that it leaves.
+the 100 % here; with what remains then, they add up to the whole error. {noise}
 
 A part may be negative: errors of opposite sign hide each other, so that taking one away shows the other. Where one part
 is much below zero and another much above, the two belong together, and neither number says what replacing that part
@@ -49,8 +48,13 @@ technique's own shadow map; the shadow map by the reference's shadow rays in its
 reference's lit intervals; the lattice by every pixel; float32 by the same pieces evaluated and summed in float64. What
 float32 does to the places of the pieces is the visibility's, and so is what a strategy interpolates between corners;
 what the shader's quadrature leaves is float32's, which is more than rounding under a soft spot or one with a picture. A
-model that takes one sample a piece takes them in the technique's steps where the visibility is exact. What remains is
+model that samples points gets the pieces cut into the technique's steps where the visibility is exact. What remains is
 what the reference and the exact combination disagree on.
+
+{surfaces}
+
+What errors of a known kind are charged to is tried by `airlight attribute --planted`. A coarse shadow map does not belong
+to that part alone with every technique: {shadow_maps}.
 
 ## Pixel by pixel
 
@@ -64,6 +68,8 @@ these do not add up.
 
 [results.csv](results.csv), [results.parquet](results.parquet) and [results.json](results.json) hold all numbers.
 """
+NOISE = "The noise of the reference is subtracted, and +- is the standard error that it leaves."
+BOUND = "The reference has no noise, so that nothing is subtracted; +- bounds what its error does."
 FILES = ("README.md", "bars.png", "maps.png", "results.csv", "results.json", "results.parquet")
 
 
@@ -101,7 +107,12 @@ def write_page(folder: Path, scene: Scene, reference: Reference, found: Sequence
         phase=scene.phase.name,
         width=scene.camera.width,
         height=scene.camera.height,
+        kind="deterministic" if found[0].deterministic else "sampled",
+        error="error" if found[0].deterministic else "standard error",
         rel_error=reference.estimate.rel_error,
+        noise=BOUND if found[0].deterministic else NOISE,
+        surfaces=other_surfaces(found),
+        shadow_maps=SHADOW_MAPS,
         summary=_summary(found),
         sections="\n\n".join(map(_section, found)),
     )
@@ -115,7 +126,7 @@ def _summary(found: Sequence[Attribution]) -> str:
     lines = []
     for one in found:
         split, there = one.split, shares(one)
-        cells = [_percent(split.fraction(there[part])) if part in there else "" for part in PARTS]
+        cells = [percent(split.fraction(there[part])) if part in there else "" for part in PARTS]
         lines.append([one.label, told_rms(one, split.together), *cells, told_rms(one, split.remains)])
     return table(headings, lines)
 
@@ -127,7 +138,7 @@ def _section(found: Attribution) -> str:
             row["part"],
             f"{row['squared_error']:.4e}",
             f"{row['standard_error']:.1e}",
-            "" if row["of_parts"] is None or row["part"] in (WHOLE, REMAINS) else _percent(row["of_parts"]),
+            "" if row["of_parts"] is None or row["part"] in (WHOLE, REMAINS) else percent(row["of_parts"]),
             f"{row['image_mean']:+.4%}",
             f"{row['rms']:.4%}",
         ]
@@ -137,7 +148,3 @@ def _section(found: Attribution) -> str:
     left_out = [f"- {part}: {reason}." for part, reason in found.parts.left_out.items()]
     text = [f"### {found.label}", "", table(headings, lines)]
     return "\n".join([*text, *(["", "Left out:", "", *left_out] if left_out else [])])
-
-
-def _percent(fraction: float) -> str:
-    return "noise" if np.isnan(fraction) else f"{fraction:.2%}"

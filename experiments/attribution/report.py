@@ -15,7 +15,7 @@ from experiments.attribution.page import write_page
 from experiments.attribution.pictures import Pictures
 from experiments.attribution.shapley import Coalition
 from experiments.attribution.split import Share
-from experiments.attribution.tables import REMAINS, shares, told_rms
+from experiments.attribution.tables import REMAINS, other_surfaces, shares, told_rms
 from experiments.bars import Bars
 from experiments.console import console, plain_table, say
 from experiments.terminal import COLUMNS
@@ -88,7 +88,10 @@ def attribution_table(found: Sequence[Attribution]) -> Table:
     reasons = dict.fromkeys(f"{part}: {reason}" for one in found for part, reason in one.parts.left_out.items())
     table.caption = (
         "RMS: root of what all parts have together, over the reference's mean, and of what remains with all of them "
-        "exact. +-: standard error by the reference's noise. " + f"-: {'; '.join(reasons)}." * bool(reasons)
+        f"exact. +-: {'a bound on' if found[0].deterministic else 'standard error by'} "
+        f"the reference's {'error' if found[0].deterministic else 'noise'}. {other_surfaces(found)} "
+        + f"-: {'; '.join(reasons)}."
+        * bool(reasons)
     )
     return table
 

@@ -17,6 +17,9 @@ channels counted as if their noise were one, which in grey fog under white light
 bound. The same formula with t - r for D_i serves v itself: with d the error without noise, its mean is the sum of
 4 d^2 s^2 + 4 s^4, over N^2, and v's variance that of 4 d^2 s^2 + 2 s^4 + 2 s^4 / (m - 1), the last from s^2 as it was
 estimated from m passes: no more, from two passes on. Pixels are no sample: the split is of this picture.
+
+A deterministic reference has no noise, and a bound b of its error in place of s. Nothing is subtracted then, so that no
+v is negative, and every share is off by no more than mean (2 |D_i| b + b^2).
 """
 
 from __future__ import annotations
@@ -39,7 +42,7 @@ class Share:
 
     Attributes
     ----------
-    value, standard_error : float    [radiance^2]
+    value, standard_error : float    [radiance^2]; by a deterministic reference a bound in place of the second
     signed : (H, W, 3)               [radiance]
     """
 
@@ -80,7 +83,13 @@ class Split:
         return float("nan") if self.together.is_noise else share.value / self.together.value
 
 
-def split(parts: Sequence[str], pictures: Mapping[Coalition, Image], reference: Image, standard_error: Image) -> Split:
+def split(
+    parts: Sequence[str],
+    pictures: Mapping[Coalition, Image],
+    reference: Image,
+    standard_error: Image,
+    is_bound: bool = False,
+) -> Split:
     """Split the error of the picture in which nothing is replaced.
 
     Parameters
@@ -88,6 +97,7 @@ def split(parts: Sequence[str], pictures: Mapping[Coalition, Image], reference: 
     parts : names
     pictures : coalition of replaced parts to the picture (H, W, 3), for all `coalitions(parts)`
     reference, standard_error : (H, W, 3)    the noise independent from pixel to pixel
+    is_bound : bool                          the reference has no noise, and this bounds its error
 
     Raises
     ------
@@ -95,6 +105,7 @@ def split(parts: Sequence[str], pictures: Mapping[Coalition, Image], reference: 
         As `shapley`; or a picture is not of the reference's shape.
     """
     noise = np.asarray(standard_error, np.float64)
+    subtracted = 0.0 if is_bound else np.mean(noise**2)
     signed, left = {}, {}
     for chosen in coalitions(parts):
         if chosen not in pictures:
@@ -102,11 +113,13 @@ def split(parts: Sequence[str], pictures: Mapping[Coalition, Image], reference: 
         if pictures[chosen].shape != reference.shape:
             raise ValueError(f"pictures must have the reference's shape {reference.shape}: {pictures[chosen].shape}")
         signed[chosen] = np.asarray(pictures[chosen], np.float64) - reference
-        left[chosen] = float(np.mean(signed[chosen] ** 2) - np.mean(noise**2))
+        left[chosen] = float(np.mean(signed[chosen] ** 2) - subtracted)
     values, maps = shapley(parts, left), shapley(parts, signed)
 
     def share(value: float, errors: Signed) -> Share:
         slope = 2 * np.abs(errors) / errors.size
+        if is_bound:
+            return Share(value, float(np.sum(slope * noise) + np.mean(noise**2)), errors)
         return Share(value, float(np.sqrt(np.sum(np.sum(slope * noise, axis=-1) ** 2))), errors)
 
     nothing, everything = Coalition(), Coalition(parts)

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from experiments.attribution.coalitions import PARTS
 from experiments.attribution.measurement import Attribution
+from experiments.attribution.pictures import OTHER_SURFACE
 from experiments.attribution.split import Share
 from experiments.provenance import describe_technique
 
 # what is no part, and stands in the same tables
 WHOLE, TOGETHER, REMAINS = "whole", "parts together", "remains"
-NUMBERS = ("squared_error", "standard_error", "of_parts", "of_mean", "image_mean", "rms")
+NUMBERS = ("squared_error", "standard_error", "of_parts", "of_mean", "image_mean", "rms", "in_other_surfaces")
 Row = dict[str, Any]
+
+
+def percent(fraction: float) -> str:
+    """A fraction in per cent; NaN is what cannot be told from noise."""
+    return "noise" if np.isnan(fraction) else f"{fraction:.2%}"
 
 
 def shares(found: Attribution) -> dict[str, Share]:
@@ -30,6 +37,20 @@ def told_rms(found: Attribution, share: Share) -> str:
     return f"{found.of_mean(share):.3%}"
 
 
+def other_surfaces(found: Sequence[Attribution]) -> str:
+    """Where OpenGL and the reference see different surfaces, and what that has of each technique's error; in words."""
+    where = found[0].other_surfaces
+    what = f"OpenGL and the reference see surfaces whose distances differ by more than {OTHER_SURFACE:.0%}"
+    if not where.any():
+        return f"In none of the {where.size} pixels {what}."
+    shares = ", ".join(f"{one.label} {percent(one.in_other_surfaces)}" for one in found)
+    return (
+        f"In {where.sum()} of {where.size} pixels {what}, as at silhouettes. The exact combination ends there where "
+        "OpenGL does, so that what this costs stands in what remains. These pixels' part of the squared error: "
+        f"{shares}."
+    )
+
+
 def rows(found: Attribution) -> list[Row]:
     """A row for the whole error, for each of the five parts, for those together, and for what remains.
 
@@ -38,6 +59,8 @@ def rows(found: Attribution) -> list[Row]:
     of_mean                          root of the squared error over the reference's mean, with the square's sign
     image_mean                       mean of the signed map over the reference's mean: what the part does to it
     rms                              root mean square of the signed map over the reference's mean
+    in_other_surfaces                how much of the whole squared error lies in pixels in which OpenGL sees another
+                                     surface than the reference does; for the whole alone, empty where that is noise
     """
     mean = float(np.mean(found.reference))
     about, there, lines = describe_technique(found.technique), shares(found), []
@@ -53,6 +76,7 @@ def rows(found: Attribution) -> list[Row]:
                 found.of_mean(share),
                 float(np.mean(share.signed)) / mean,
                 float(np.sqrt(np.mean(share.signed**2))) / mean,
+                None if name != WHOLE or np.isnan(found.in_other_surfaces) else found.in_other_surfaces,
             )
             numbers = dict(zip(NUMBERS, values, strict=True))
         lines.append({**about, "part": name, **numbers, "left_out": found.parts.left_out.get(name, "")})
@@ -69,5 +93,6 @@ def as_object(found: Attribution) -> dict[str, Any]:
         "technique": describe_technique(found.technique),
         **numbers,
         "left_out": found.parts.left_out,
+        "pixels_of_other_surfaces": int(found.other_surfaces.sum()),
         "squared_error_with_exact": left,
     }

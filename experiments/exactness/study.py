@@ -155,11 +155,13 @@ def _case(scene: Scene, truth: Reference, sampled: Reference, before: int) -> Ca
         # a ray that both find dark does not change
         return np.abs(length - before) / np.where(longer > 0, longer, 1.0)
 
+    doubled, moved = (Stable.among(change(one), error(frame.scattering)) for one in lengths)
     return Case(
         scene.name,
         2 * before,
         frame.scattering.mean(dtype=np.float64) / expected.mean() - 1,
-        *(Stable.among(change(one), error(frame.scattering)) for one in lengths),
+        doubled,
+        moved,
         against_reference(scene, sampled, given.scattering, GIVEN),
         reads,
         milliseconds,

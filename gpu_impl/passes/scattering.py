@@ -49,6 +49,7 @@ def add_scattering(
         "STEPS": technique.steps,
         "SHADOW_GIVEN": int(inputs.given is not None),
         "AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners),
+        "IN_STEPS": int(strategy.in_steps),
         "DEPTH_ONLY": int(model.depth_only),
         **strategy.defines,
         **supply.defines,

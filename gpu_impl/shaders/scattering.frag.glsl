@@ -18,6 +18,12 @@ const float CUT_OFF = -1e30;      // in place of the number of pieces
 in vec3 corner_airlight;   // of whole pieces under a light that is alike in all directions
 #endif
 
+void add_piece(float t0, float dt, float w) {
+    COUNT_PIECE;
+    RECORD_PIECE(t0, dt, w);
+    result.rgb += w * airlight(current_ray, light, t0, dt);
+}
+
 void lit(float t0, float dt, float w) {
     result.a += 1.0;
 #if AIRLIGHT_AT_CORNERS == 1
@@ -34,9 +40,14 @@ void lit(float t0, float dt, float w) {
         if (begin > t0 || end < t0 + dt) dt = end - begin;
         t0 = begin;
     }
-    COUNT_PIECE;
-    RECORD_PIECE(t0, dt, w);
-    result.rgb += w * airlight(current_ray, light, t0, dt);
+#if IN_STEPS == 1
+    // no longer than a step of STEPS over the ray; a piece of one step stays whole, whatever its rounding
+    int parts = max(int(ceil(dt * float(STEPS) / current_ray.t_max - 0.01)), 1);
+    dt /= float(parts);
+    for (int i = 0; i < parts; ++i) add_piece(t0 + float(i) * dt, dt, w);
+#else
+    add_piece(t0, dt, w);
+#endif
 #endif
 }
 

@@ -5,6 +5,8 @@ One that needs more than ray, light and shadow map has a module beside this one 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from gpu_impl.passes.shadow_volume import check_polygons
 from gpu_impl.visibilities.blue_noise import BlueNoise
 from gpu_impl.visibilities.exact import ShadowPyramid
@@ -94,4 +96,12 @@ VISIBILITIES = {
         asks_points=False,
         given=True,
     ),
+}
+VISIBILITIES |= {
+    f"{name}:steps": replace(
+        VISIBILITIES[name],
+        what=f"the pieces of {name}, cut into steps for models that sample points: a control",
+        in_steps=True,
+    )
+    for name in ("exact", "given")
 }

@@ -40,17 +40,13 @@ class ShadowFaces(Supply):
         self._casters = inputs.kept.get("shadow casters", lambda: ShadowCasters(device.context, scene))
         with inputs.clock.time_pass("shadow polygons"):
             self._casters.find_faces(device, scene, inputs.light, inputs.pictures)
-        camera = scene.camera
-        self._projection = {
-            "world_to_lattice": _world_to_lattice(camera, inputs.technique.downsample),
-            "nearest": NEAREST * camera.near,
-        }
+        self._matrix = _world_to_lattice(scene.camera, inputs.technique.downsample)
 
     def bind(self, program: Any) -> None:
         """Bind both buffers, and set the faces' projection."""
         self._casters.faces.bind_to_storage_buffer(FACES)
         self._casters.draw_calls.bind_to_storage_buffer(DRAWS)
-        set_uniforms(program, self._projection)
+        set_uniforms(program, {"world_to_lattice": self._matrix})
 
     def draw(self, device: Device, program: Any, targets: tuple[Any, ...], add: bool) -> None:
         """Draw the whole ray's piece and those behind all faces, added up."""

@@ -118,6 +118,8 @@ class Visibility:
                                rays can answer in place of the map
     given : bool               whether it reports lit intervals that it was handed (`given.py`)
     grid_only : bool           whether it draws on the image's pixels, so that it takes no lattice but the grid
+    in_steps : bool            whether the driver cuts what it reports into the technique's steps, for models that
+                               sample points
     airlight_at_corners : bool whether its vertex shader evaluates the airlight model, for the driver to interpolate
     check : callable           raises InputError where this OpenGL lacks something
     """
@@ -131,5 +133,6 @@ class Visibility:
     asks_points: bool = True
     given: bool = False
     grid_only: bool = False
+    in_steps: bool = False
     airlight_at_corners: bool = False
     check: Callable[[Device], None] = anywhere

@@ -82,15 +82,16 @@ class Search:
     steps: NDArray[np.uint32]
 
 
-def lit_intervals(scene: Scene, positions: Array | None = None) -> LitIntervals:
+def lit_intervals(scene: Scene, positions: Array | None = None, ends: Array | None = None) -> LitIntervals:
     """Lit intervals of a scene's pixels, or of rays through other positions; see `search`.
 
     Parameters
     ----------
     positions : (h, w, 2)    as `Camera.rays` takes them; neighbours there are to be neighbours in the image
+    ends : (h, w)            where each ray ends [scene unit]; on the first surface or the far plane by default
     """
     shadow_rays = ShadowRays(scene)
-    rays = Rays.of_camera(scene, shadow_rays.t_end(positions), positions)
+    rays = Rays.of_camera(scene, shadow_rays.t_end(positions) if ends is None else ends.ravel(), positions)
     shape = None if positions is None else positions.shape[:2]
     return search(shadow_rays, rays, scene, shape=shape).intervals
 

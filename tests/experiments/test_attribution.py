@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import polars
 import pytest
+from registries import restored_registries
+from rich.console import Console
 from scene_files import point, sphere, spot, write_scene
 
 import airlight as face
@@ -26,14 +30,16 @@ from experiments.attribution.coalitions import (
 from experiments.attribution.measurement import attribute
 from experiments.attribution.page import FILES
 from experiments.attribution.pictures import Pictures
-from experiments.attribution.planted import LEAST, PLANTED, Planted, try_planted
+from experiments.attribution.planted import LEAST, PLANTED, Planted, planted_table, try_planted
 from experiments.attribution.shapley import coalitions
+from gpu_impl.shader_source import SHADERS
 from gpu_impl.techniques import TECHNIQUES, Technique, find_technique
 from scenes.errors import InputError
 from scenes.model import Scene
 
 ALL = frozenset(PARTS)
 SIZE = (32, 32)
+MARCH = {"steps": 32, "shadow_map": 128}
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +124,7 @@ def rounding(pictures: Pictures, technique: Technique, *parts: str) -> float:
 
 
 MODELS = [
-    *("quadrature", "riemann", "riemann:steps", "one_ei", "sun2005", "sun2005:512"),
+    *("quadrature", "riemann", "depth_fog", "one_ei", "sun2005", "sun2005:512"),
     *("weng2010", "weng2010:printed", "weng2010:four-ei", "weng2010:three-ei", "weng2010:two-ei"),
     *("weng2010:taylor", "weng2010:minimax"),
 ]
@@ -136,7 +142,7 @@ def test_float64_knows_spots_and_several_lights(beam: int, tmp_path: Path) -> No
     emitters = spot("1, 3, 1", "0, 0, 0", 25, beam) + point(-2, 1, 1)
     scene = write_scene(tmp_path, shapes=sphere(0.3, 1.3, 0, 0.4), emitters=emitters, size=SIZE)
     with Pictures(scene) as pictures:
-        for model in ("quadrature", "riemann", "one_ei"):
+        for model in ("quadrature", "riemann", "one_ei", "depth_fog"):
             technique = find_technique(f"uniform_march+{model}", steps=16, downsample=2, shadow_map=128)
             # measured: 2e-6, and 2.0e-4 where the shader's nodes meet the kink at the beam's edge
             limit = 6e-4 if model == "quadrature" and beam < 25 else 6e-6
@@ -184,18 +190,55 @@ def test_exact_parts_are_the_reference(ball: Scene, pictures: Pictures) -> None:
 
 
 def test_point_samples_in_steps() -> None:
-    # of a march they are the march's own, and of longer pieces as dense as a march of the whole ray has them
+    # nothing is dark, so that the one lit interval is the whole ray, and its steps are those of a march
     scene = face.load("empty", SIZE)
     with Pictures(scene) as pictures:
-        own, steps = (
-            pictures.draw(find_technique(f"uniform_march+{model}", steps=16), exact())
-            for model in ("riemann", "riemann:steps")
-        )
-        # measured: 6e-7, another compiler's fused products
-        np.testing.assert_allclose(steps, own, rtol=3e-6)
-        one_piece = pictures.draw(find_technique("lit_intervals:unbounded+riemann:steps", steps=16), exact())
-    # nothing is dark, so the one lit interval is the whole ray
-    np.testing.assert_allclose(one_piece, own, rtol=1e-5)
+        march = find_technique("Nishita1987", steps=16)
+        own = pictures.draw(march, exact())
+        for parts in ((VISIBILITY,), (VISIBILITY, SHADOW_MAP)):
+            assert replaced(march, exact(*parts)).visibility == ("exact:steps", "given:steps")[len(parts) - 1]
+            for more in ((), (FLOAT32,)):
+                # measured: LATER
+                np.testing.assert_allclose(pictures.draw(march, exact(*parts, *more)), own, rtol=1e-5)
+        # one sample of all of the ray is another picture
+        assert (np.abs(pictures.draw(find_technique("exact+riemann", steps=16), exact()) / own - 1) > 0.1).mean() > 0.5
+
+
+def test_a_model_of_ones_own_that_samples_points_keeps_its_share(
+    tmp_path: Path, ball: Scene, pictures: Pictures
+) -> None:
+    truth = face.reference(ball, deterministic=True)
+    (tmp_path / "copied.glsl").write_text((SHADERS / "airlight/riemann.glsl").read_text())
+    shares = {}
+    with restored_registries():
+        for says in ("", ", point_samples = true"):
+            file = tmp_path / "mine.toml"
+            file.write_text(
+                f'name = "Mine"\nvisibility = "uniform_march"\nairlight = {{ file = "copied.glsl"{says} }}\n'
+            )
+            own = attribute(pictures, find_technique(str(file), **MARCH), truth)
+            assert tuple(own.parts.left_out) == (LATTICE, FLOAT32)
+            shares[says] = {part: own.split.fraction(share) for part, share in own.split.parts.items()}
+    found = attribute(pictures, find_technique("Nishita1987", **MARCH), truth).split
+    registered = {part: found.fraction(found.parts[part]) for part in shares[""]}
+    # measured: LATER
+    assert shares[", point_samples = true"] == pytest.approx(registered, abs=1e-5)
+    # one sample of pieces that are no longer steps
+    assert shares[""][MODEL] > 2 * registered[MODEL]
+
+
+def test_other_surfaces_are_charged_to_no_part() -> None:
+    scene = face.load("wire_mesh", (48, 48))
+    truth = face.reference(scene, deterministic=True)
+    with Pictures(scene) as pictures:
+        found = attribute(pictures, find_technique("exact+quadrature"), truth)
+        elsewhere = pictures.other_surfaces
+    # measured: LATER
+    assert 0 < elsewhere.sum() < 20
+    assert found.in_other_surfaces > 0.5
+    share = found.split.parts[SHADOW_MAP].signed
+    assert np.sum(share[elsewhere] ** 2) < 0.1 * np.sum(share**2)
+    assert np.sum(found.split.remains.signed[elsewhere] ** 2) > 0.99 * np.sum(found.split.remains.signed**2)
 
 
 @pytest.mark.parametrize(
@@ -225,10 +268,28 @@ def test_the_public_face(ball: Scene) -> None:
 
 
 @pytest.mark.parametrize("planted", PLANTED, ids=lambda planted: planted.name)
-def test_a_planted_error_shows_up_in_its_own_part(planted: Planted) -> None:
+def test_a_planted_error_shows_up_in_its_own_part_and_in_no_other(planted: Planted) -> None:
     outcome = try_planted(planted)
+    assert outcome.is_noticed
     assert outcome.own_share > LEAST
+    for part in {*PARTS} - {planted.part}:
+        assert replace(outcome, planted=replace(planted, part=part)).own_share < 1 - LEAST
     assert outcome.after.split.whole.value > outcome.before.split.whole.value
+
+
+def test_what_hardly_changes_the_picture_is_charged_to_no_part() -> None:
+    planted = Planted(
+        "two texels more", SHADOW_MAP, "lit_intervals+quadrature", "lit_intervals+quadrature", {}, {"shadow_map": 1026}
+    )
+    outcome = try_planted(planted)
+    assert not outcome.is_noticed
+    assert np.isnan(outcome.own_share)
+    drawn = Console(width=150, record=True, file=StringIO())
+    drawn.print(planted_table([outcome]))
+    assert (
+        "two texels more  shadow map               -           -            -         -         -"
+        in drawn.export_text()
+    )
 
 
 def test_a_cell_that_a_control_cannot_take_is_told(
@@ -279,6 +340,7 @@ def test_the_command_writes_its_page(airlight, tmp_path: Path) -> None:
         (("sphere", "--technique", "Weng2011"), "There is no technique 'Weng2011'"),
         (("sphere", "-p", "phase=hg", "--technique", "Weng2010"), "The airlight model one_ei takes the phase function"),
         (("sphere", "--rel-error", "-1"), "-1"),
+        (("sphere", "--size", "7", "9"), "An error is split over at least 64 pixels; ask for a larger picture."),
     ],
 )
 def test_refusals_are_one_sentence(words: tuple[str, ...], said: str, airlight) -> None:

@@ -117,6 +117,20 @@ def test_parts_and_what_remains_are_the_whole() -> None:
     assert found.whole.value == pytest.approx(np.mean((drawn[frozenset()] - reference) ** 2) - 0.02**2, rel=1e-12)
 
 
+def test_a_reference_without_noise_leaves_nothing_to_subtract() -> None:
+    truth, drawn = pictures()
+    off = np.random.default_rng(9).uniform(-1e-3, 1e-3, SHAPE)
+    found, exact = (split(PARTS, drawn, one, np.full(SHAPE, 1e-3), is_bound=True) for one in (truth + off, truth))
+    # the last coalition is the truth itself
+    assert exact.remains.value == 0
+    assert found.remains.value == pytest.approx(np.mean(off**2), rel=1e-12)
+    for name, share in shares(found).items():
+        assert abs(share.value - shares(exact)[name].value) <= share.standard_error
+    # all off by as much, and the same way, as can be
+    worst = split(PARTS, drawn, truth - 1e-3 * np.sign(found.whole.signed), np.full(SHAPE, 1e-3), is_bound=True)
+    assert worst.whole.value - exact.whole.value > 0.9 * exact.whole.standard_error
+
+
 def test_pictures_of_another_size_are_refused() -> None:
     truth, drawn = pictures()
     with pytest.raises(ValueError, match="pictures must have the reference's shape"):

@@ -37,7 +37,7 @@ def test_positions_between_pixels_are_the_pixels_of_a_finer_image() -> None:
     fine = load("slit", size=(48, 32))
     own = lit_intervals(fine)
     centres = np.stack(np.meshgrid(np.arange(48) + 0.5, np.arange(32) + 0.5), axis=-1)
-    found = find_lit(load("slit", size=(24, 16)), 0, centres / 2)
+    found = find_lit(load("slit", size=(24, 16)), 0, centres / 2, np.zeros((32, 48)))
     np.testing.assert_array_equal(found.offsets, own.offsets)
     np.testing.assert_allclose(found.begin, own.begin, rtol=1e-9)
     np.testing.assert_allclose(found.end, own.end, rtol=1e-9)

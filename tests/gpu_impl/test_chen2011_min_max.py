@@ -155,7 +155,7 @@ def test_given_intervals_are_found_to_a_column() -> None:
     """With the shadow's exact ends in place of the map, what is left is that a column is lit or dark as a whole."""
     scene = load("half_plane", size=(32, 32))
 
-    def exact(scene: Scene, number: int, positions: Array) -> Found:
+    def exact(scene: Scene, number: int, positions: Array, ends: Array) -> Found:
         origin, direction, t_max = scene.camera.rays(positions)
         position = scene.lights[number].position
         towards_light = position - [0, 1.9, 0]

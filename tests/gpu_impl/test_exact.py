@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from texel_intervals import texel_intervals
 
 from gpu_impl.context import shared_context
 from gpu_impl.device import Device
+from gpu_impl.passes.shadow_map import MAP_FRAME
 from gpu_impl.renderer import Renderer
 from gpu_impl.shader_source import SHADERS
 from gpu_impl.techniques import find_technique
@@ -114,6 +117,59 @@ def test_the_brute_force_notices(fault: str) -> None:
     assert off(walk, changed={file: text.replace(right, wrong)}).max() > 0.01
 
 
+def beside_a_cavern() -> Walk:
+    """Rays about as far from the light as all texels reach, so that what is lit lies about the nearest place."""
+    random, rays, light = np.random.default_rng(3), ROW, LIGHTS["point"]
+    way, aside = random.normal(size=(2, rays, 3))
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    aside -= (aside * way).sum(-1, keepdims=True) * way
+    aside *= random.uniform(1.0, 1.2, (rays, 1)) / np.linalg.norm(aside, axis=1, keepdims=True)
+    parts = (light.position + aside - 2 * way, way, np.full(rays, 4.0))
+    stored = random.uniform(0.3, 1.25, (64, 6 * 64)).astype(np.float32)
+    return Walk(*(part.astype(np.float32) for part in parts), light, stored)
+
+
+def across_the_sun() -> Walk:
+    """Rays all but at right angles to parallel light, among texels whose distances are all but theirs."""
+    random, rays, light = np.random.default_rng(4), ROW, LIGHTS["sun"]
+    way = np.cross(light.direction, random.normal(size=(rays, 3)))
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    way += random.choice([-1, 1], (rays, 1)) * random.uniform(2e-3, 5e-3, (rays, 1)) * light.direction
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    away = 0.2 * random.normal(size=(rays, 3))
+    # the map's plane has the height 1 below all that BOUNDS hold
+    away -= ((away - light.position) @ light.direction - 1)[:, None] * light.direction
+    stored = (1 + random.uniform(-5e-3, 5e-3, (64, 64))).astype(np.float32)
+    return Walk(*(part.astype(np.float32) for part in (away - 0.7 * way, way, np.full(rays, 1.4))), light, stored)
+
+
+# other walks, what breaks the traversal on them and by how much they are off without [scene unit]
+CLOSE = {
+    "the nearest place forgotten": (
+        beside_a_cavern,
+        "along < 0.0 && leave > 0.0 ? 0.0 : min(abs(along), abs(leave))",
+        "min(abs(along), abs(leave))",
+        2e-5,
+    ),
+    "light that is never all but level": (
+        across_the_sun,
+        "max(approach.aside, 1e-18)",
+        "max(approach.aside, 1e-2)",
+        1e-3,
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", CLOSE)
+def test_what_lies_about_the_nearest_place_is_told(fault: str) -> None:
+    make, right, wrong, limit = CLOSE[fault]
+    walk, text = make(), (SHADERS / FILE).read_text()
+    assert right in text
+    assert sum(map(len, expected(walk))) > 3 * ROW
+    assert off(walk).max() < limit
+    assert off(walk, changed={FILE: text.replace(right, wrong)}).max() > 0.01
+
+
 def special_rays() -> tuple[np.ndarray, np.ndarray]:
     """Through the light, from it, in the planes that part a cube's faces, through its corners, along texel borders."""
     ways = np.array([way for way in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
@@ -150,6 +206,44 @@ def test_edges_and_corners_of_a_cube_lose_nothing(size: int) -> None:
         assert len(found[ray]) <= 1 + (not lit[ray])
         # measured 6e-7
         assert apart(found[ray], [(begin[ray], stop[ray])] if lit[ray] else []) < 4e-6
+
+
+def radial(way: np.ndarray, beside: np.ndarray, stored: np.ndarray) -> Walk:
+    """Rays on lines through the light, which begin at `beside` along them and are 4 long."""
+    light = LIGHTS["point"]
+    light = replace(light, position=light.position.astype(np.float32).astype(float))
+    way = way / np.linalg.norm(way, axis=1, keepdims=True)
+    parts = (light.position + beside[:, None] * way, way, np.full(len(way), 4.0))
+    return Walk(*(part.astype(np.float32) for part in parts), light, stored)
+
+
+def clipped(pieces: Sequence[tuple[float, float]], side: tuple[float, float]) -> list[tuple[float, float]]:
+    cut = [(max(begin, side[0]), min(end, side[1])) for begin, end in pieces]
+    return [piece for piece in cut if piece[0] < piece[1]]
+
+
+@pytest.mark.parametrize("size", [17, 64])
+def test_rays_through_the_light_read_the_texels_on_both_sides(size: int) -> None:
+    """Every texel has a distance of its own, which shows what a ray reads on its two sides of the light."""
+    random = np.random.default_rng(5)
+    edges = special_rays()[1][:26]
+    ways = np.concatenate([edges, edges @ MAP_FRAME.T, random.normal(size=(76, 3))])
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    # from the light, through it, up to it, and away from it
+    beside = np.repeat([0.0, -1.5, -4.0, 0.01], len(ways))
+    way = np.tile(ways, (4, 1))
+    stored = random.uniform(0.2, 3, (size, 6 * size)).astype(np.float32)
+    found, _ = reported(radial(way, beside, stored))
+    # rounding decides which of two texels a ray along their border is in, on either side of the light for itself
+    tilts = [1e-4 * np.array(tilt) for tilt in itertools.product((-1, 1), repeat=3)]
+    truths = [expected(radial(way + tilt, beside, stored)) for tilt in tilts]
+    for ray, at in enumerate(-beside):
+        told = [(begin, begin + length) for begin, length in found[ray]]
+        for side in ((0.0, max(at, 0.0)), (max(at, 0.0), 4.0)):
+            mine = np.array([(begin, end - begin) for begin, end in clipped(told, side)]).reshape(-1, 2)
+            wrong = min(apart(mine, clipped(truth[ray], side)) for truth in truths)
+            # measured 4e-7
+            assert wrong < 2e-6, (way[ray], beside[ray], side)
 
 
 def test_a_buffer_tells_the_same() -> None:
@@ -240,6 +334,36 @@ def test_a_floor_neither_shades_what_lies_before_it_nor_lets_light_through(tmp_p
     ends_on_it = (frame.depth < 24) & (sine > 2.9 / size)
     assert ends_on_it.mean() > 0.1
     assert (frame.scattering[ends_on_it] == 0).all()
+
+
+def test_what_lies_close_before_a_surface_is_not_taken_for_it(tmp_path) -> None:
+    """A level board 4 % of the light's distance above the floor shades it, and the fog between the two."""
+    plane = "<shape type='rectangle'><transform name='to_world'><scale x='{}' y='{}'/><rotate x='1' angle='-90'/>"
+    plane += "<translate y='{}'/></transform></shape>"
+    floor, board, half = -1.0, -0.85, 1.2
+    shapes = plane.format(60, 60, floor) + plane.format(half, half, board)
+    scene = write_scene(tmp_path, point(-2.5, 2.6, 0), shapes, size=(48, 48), eye="4, 1, 0.3")
+    technique = find_technique(EXACT, shadow_map=1024)
+    with Renderer(scene) as renderer:
+        depth = renderer.render(technique).depth.astype(float).ravel()
+        (pieces,) = renderer.record(technique)
+    origin, direction, _ = (np.asarray(part, float) for part in scene.camera.rays())
+    origin = np.broadcast_to(origin, direction.shape)
+    share = (np.arange(2000) + 0.5) / 2000
+    place = origin.reshape(-1, 1, 3) + (share * depth[:, None])[..., None] * direction.reshape(-1, 1, 3)
+    away = place - scene.lights[0].position
+    seen_at = scene.lights[0].position + away * ((board - scene.lights[0].position[1]) / away[..., 1])[..., None]
+    dark = (place[..., 1] < board) & (np.abs(seen_at[..., [0, 2]]) < half).all(-1)
+    # rays that end in the shadow, none of them on its border
+    ends = (
+        dark[:, -1] & (np.abs(place[:, -1, 1] - floor) < 1e-2) & (np.abs(seen_at[:, -1, [0, 2]]) < half - 0.02).all(-1)
+    )
+    assert ends.sum() > 50
+    length = np.bincount(pieces.cell, weights=pieces.dt, minlength=depth.size)
+    wrong = np.abs(length - depth * (1 - dark.mean(-1)))[ends]
+    assert (depth * dark.mean(-1))[ends].max() > 0.2
+    print(wrong.max(), np.median(wrong), ends.sum(), (depth * dark.mean(-1))[ends].min())
+    assert wrong.max() < 0.02
 
 
 def test_without_an_occluder_a_ray_is_one_piece(tmp_path) -> None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from oracles import piece_airlight
-from scene_files import point, write_scene
+from scene_files import point, sphere, spot, write_scene
 
 from gpu_impl.given import Found
 from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import find_technique
+from reference.deterministic.ray_spans import Rays
 from scenes.errors import InputError
 from scenes.model import Array, Scene
 
@@ -18,7 +21,7 @@ BEGIN, END = (1.0, 3.5), (2.0, 5.25)
 SIZE = (10, 8)
 
 
-def two_pieces(scene: Scene, number: int, positions: Array) -> Found:
+def two_pieces(scene: Scene, number: int, positions: Array, ends: Array) -> Found:
     """Two intervals a ray, of the second light the later one alone."""
     rays = positions[..., 0].size
     begin, end = ((part[number:]) for part in (BEGIN, END))
@@ -62,6 +65,70 @@ def test_a_march_that_asks_given_intervals_converges_to_them(scene: Scene) -> No
     assert errors[1] < errors[0] / 4
 
 
+def whole_ray(scene: Scene, number: int, positions: Array, ends: Array) -> Found:
+    """All of the ray as far as OpenGL sees, from its beginning on."""
+    return Found(np.arange(ends.size + 1), np.zeros(ends.size), ends.ravel())
+
+
+def test_nothing_hides_the_light_outside_a_spots_cone(tmp_path: Path) -> None:
+    scene = write_scene(tmp_path, emitters=spot("1, 2, 1", "0, 0, 0", 25, 25), size=SIZE)
+
+    def inside_the_cone(scene: Scene, number: int, positions: Array, ends: Array) -> Found:
+        begin, end = Rays.of_camera(scene, ends.ravel(), positions).reached_by(scene.lights[number])
+        lit = end > begin
+        return Found(np.concatenate([[0], np.cumsum(lit)]), begin[lit], end[lit])
+
+    # a step that is half outside has its middle there, and the driver cuts it at the cone by itself
+    with Renderer(scene, find_lit=inside_the_cone) as renderer:
+        given = renderer.render(find_technique("given+quadrature")).scattering
+        march = find_technique("uniform_march+quadrature", steps=16, shadow_source="rays")
+        found = renderer.render(march).scattering
+    assert given.max() > 0
+    # measured: LATER
+    np.testing.assert_allclose(found, given, atol=1e-5 * given.max())
+
+
+def test_given_intervals_begin_where_the_cameras_ray_does(tmp_path: Path) -> None:
+    # the fog does not: the eye is outside it
+    box = (
+        "<shape type='cube'><transform name='to_world'><scale value='1.5'/></transform><bsdf type='null'/>"
+        "<ref name='interior' id='fog'/></shape>"
+    )
+    scene = write_scene(tmp_path, emitters=point(0.3, 0.6, 0.2), shapes=box, size=SIZE, inside=False)
+
+    def later_half(scene: Scene, number: int, positions: Array, ends: Array) -> Found:
+        rays = Rays.of_camera(scene, ends.ravel(), positions)
+        middle = 0.5 * (rays.fog_begin + rays.fog_end)
+        lit = rays.fog_end > middle
+        return Found(np.concatenate([[0], np.cumsum(lit)]), middle[lit], rays.fog_end[lit])
+
+    t_max = scene.camera.rays()[2]
+    rays = Rays.of_camera(scene, t_max.ravel())
+    begin, end = (part.reshape(t_max.shape) for part in (rays.fog_begin, rays.fog_end))
+    # the way through clear air takes nothing away
+    truth = piece_airlight(scene, scene.lights[0], 0.5 * (begin + end), end)
+    truth *= np.exp(begin[..., None] * scene.medium.sigma_t)
+    assert (begin[truth[..., 0] > 0] > 3).all()
+    with Renderer(scene, find_lit=later_half) as renderer:
+        found = renderer.render(find_technique("given+quadrature")).scattering
+        march = find_technique("uniform_march+quadrature", steps=64, shadow_source="rays")
+        marched = renderer.render(march).scattering
+    # measured: LATER
+    np.testing.assert_allclose(found, truth, atol=1e-5 * truth.max())
+    # the middle of the ray is the end of a step; measured: LATER
+    np.testing.assert_allclose(marched, truth, atol=1e-5 * truth.max())
+
+
+def test_the_finder_is_told_where_rays_end(scene: Scene, tmp_path: Path) -> None:
+    # the whole rays, each as far as the eye sees
+    scene = write_scene(tmp_path, shapes=sphere(0, 0, 0, 1), size=SIZE)
+    with Renderer(scene, find_lit=whole_ray) as renderer:
+        given = renderer.render(find_technique("given+quadrature"))
+    np.testing.assert_allclose(
+        given.scattering, piece_airlight(scene, scene.lights[0], 0 * given.depth, given.depth), rtol=1e-5
+    )
+
+
 def test_the_map_is_asked_where_rays_are_not(scene: Scene) -> None:
     # nothing stands in the light, so that the map has no shadow
     lit = scattering(scene, "lit_intervals:unbounded+quadrature", steps=64)
@@ -72,7 +139,7 @@ def test_the_map_is_asked_where_rays_are_not(scene: Scene) -> None:
 def test_each_cell_of_the_lattice_has_its_own_intervals(scene: Scene, downsample: int) -> None:
     asked = []
 
-    def one_lit_column(scene: Scene, number: int, positions: Array) -> Found:
+    def one_lit_column(scene: Scene, number: int, positions: Array, ends: Array) -> Found:
         asked.append(positions)
         lit = (np.arange(positions.shape[1]) == 1) & np.ones(positions.shape[:2], bool)
         offsets = np.concatenate([[0], np.cumsum(lit.ravel())])
@@ -94,7 +161,7 @@ def test_each_cell_of_the_lattice_has_its_own_intervals(scene: Scene, downsample
 def test_another_eye_has_other_intervals(scene: Scene) -> None:
     eyes = []
 
-    def nothing_lit(scene: Scene, number: int, positions: Array) -> Found:
+    def nothing_lit(scene: Scene, number: int, positions: Array, ends: Array) -> Found:
         eyes.append(scene)
         return Found(np.zeros(positions[..., 0].size + 1, int), np.zeros(0), np.zeros(0))
 

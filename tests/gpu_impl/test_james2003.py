@@ -14,34 +14,19 @@ from lit_pieces import Plate
 from oracles import SphereScene, piece_airlight
 from scene_files import point, spot, write_scene
 from shadow_volumes import behind_polygon, meet, shadowed_airlight
+from signed_pieces import BODY_OF_FOG, CUBE, FACES, SUN, lit_lengths, signed_lengths
 
 from analytic.models.depth_fog import depth_fog
 from gpu_impl.frame import Frame
-from gpu_impl.recording import Pieces
 from gpu_impl.renderer import Renderer
 from gpu_impl.shadow_casters import parts_of, sides_of
 from gpu_impl.techniques import find_technique
-from reference.deterministic import lit_intervals
 from scenes.loader import load
 from scenes.model import Light, Scene
 
-FACES = "shadow_faces+quadrature"
 # a level plate and its edges in x, between a light above and an eye that looks at the fog below
 LIGHT = point(0.3, 2.6, 0)
 UPPER, LOWER = Plate(1.9, -1.2, 0.1), Plate(1.5, -0.4, 0.9)
-CUBE = (
-    "<shape type='cube'><transform name='to_world'><scale value='{0}'/><translate x='{1}' y='{2}' z='{3}'/></transform>"
-    "</shape>"
-)
-SUN = (
-    "<emitter type='directional'><vector name='direction' value='0.6, -1, -0.3'/>"
-    "<rgb name='irradiance' value='3, 2, 1'/></emitter>"
-)
-BODY_OF_FOG = (
-    "<shape type='cube'><bsdf type='null'/><ref name='interior' id='fog'/>"
-    "<transform name='to_world'><scale x='3' y='2' z='2'/></transform></shape>"
-)
-
 
 def drawn(scene: Scene, technique: str = FACES, **settings: object) -> Frame:
     with Renderer(scene) as renderer:
@@ -57,23 +42,6 @@ def behind_plate(scene: Scene, plate: Plate, t_end: np.ndarray) -> tuple[np.ndar
     z = plate.half_depth
     corners = [(plate.x0, plate.y, -z), (plate.x1, plate.y, -z), (plate.x1, plate.y, z), (plate.x0, plate.y, z)]
     return behind_polygon(scene, corners, t_end)
-
-
-def lit_lengths(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Lit length of each ray, as the faces' signed pieces have it and as the reference's rays do, (H W,) each.
-
-    The scene has one light.
-    """
-    with Renderer(scene) as renderer:
-        (pieces,) = renderer.record(find_technique(FACES, shadow_map=4))
-    found = lit_intervals(scene)
-    count = scene.camera.width * scene.camera.height
-    return signed_lengths(pieces), np.bincount(found.pixel, found.end - found.begin, minlength=count)
-
-
-def signed_lengths(pieces: Pieces) -> np.ndarray:
-    """Pieces' lengths times their weights, added up for each cell, in float64: most are long, and cancel."""
-    return np.bincount(pieces.cell, pieces.w.astype(np.float64) * pieces.dt, minlength=pieces.start.size)
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [("half_plane", 6e-6), ("slit", 2e-6)])

@@ -6,6 +6,9 @@ import ctypes
 import os
 from pathlib import Path
 
+import pytest
+
+from gpu_impl import frame_passes
 from gpu_impl.context import shared_context
 from gpu_impl.renderer import Renderer
 from gpu_impl.techniques import find_technique
@@ -90,3 +93,50 @@ def test_another_size_leaves_nothing() -> None:
                 renderer.milliseconds(technique, frames=2)
         counts.append(live_objects())
     assert counts[0] == counts[1]
+
+
+@pytest.mark.parametrize("name", ["Chen2011", "Dobashi2002", "James2003", "Weng2010"])
+@pytest.mark.parametrize("place", ["add_scattering", "add_surface", "combine"])
+def test_an_interrupted_frame_leaves_nothing(name: str, place: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its textures and buffers serve the next; and views that were kept before are still there."""
+
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    technique = find_technique(name, steps=4, shadow_map=16, downsample=2)
+    with Renderer(load("slit", size=(24, 16))) as renderer:
+        whole = renderer.render(technique)
+        renderer.picture(technique)
+        before = live_objects()
+        for _ in range(3):
+            with monkeypatch.context() as patched:
+                patched.setattr(frame_passes, place, stop)
+                with pytest.raises(KeyboardInterrupt):
+                    renderer.picture(technique)
+                # of a view that is kept, which has its surfaces already
+                if place != "add_surface":
+                    with pytest.raises(KeyboardInterrupt):
+                        renderer.render(technique)
+            renderer.picture(technique)
+        assert live_objects() == before
+        again = renderer.render(technique)
+    for layer, image in whole.layers.items():
+        assert (image == again.layers[layer]).all(), layer
+
+
+def test_an_interrupted_recording_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    technique = find_technique("Chen2011", steps=4, shadow_map=16)
+    with Renderer(load("slit", size=(24, 16))) as renderer:
+        renderer.record(technique)
+        before = live_objects()
+        with monkeypatch.context() as patched:
+
+            def stop(*_: object) -> None:
+                raise KeyboardInterrupt
+
+            patched.setattr(renderer.passes, "rays", stop)
+            for _ in range(3):
+                with pytest.raises(KeyboardInterrupt):
+                    renderer.record(technique)
+        renderer.record(technique)
+        assert live_objects() == before

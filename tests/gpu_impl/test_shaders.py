@@ -79,6 +79,7 @@ PLAIN = {
     "CULL": 0,
     "SHADOW_GIVEN": 0,
     "AIRLIGHT_AT_CORNERS": 0,
+    "IN_STEPS": 0,
     **{name: value for strategy in VISIBILITIES.values() for name, value in strategy.defines.items()},
 }
 VARIANTS = [
@@ -188,7 +189,8 @@ def compiled_cell(visibility: str, airlight: str, function: Phase, variants: lis
         program = device.program(
             "scattering.frag.glsl",
             strategy.vertex,
-            defines=defines | strategy.defines | {"AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners)},
+            defines=defines | strategy.defines | {"AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners)}
+            | {"IN_STEPS": int(strategy.in_steps)},
             includes=PARTS
             | {
                 "<airlight>": model.source,

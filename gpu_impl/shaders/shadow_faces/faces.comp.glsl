@@ -1,6 +1,6 @@
 // The faces of shadow volumes. Each triangle that casts has a volume of its own, with a face behind each of its edges;
 // where the triangles at an edge cancel, the face is inside a volume and is left out. The triangle itself is the volume's
-// cap: a ray ends on it, but where the near plane has cut it away; only caps before the near plane are faces here.
+// cap: a ray ends on it, but where the near plane has cut it away; only caps that begin before that plane are faces here.
 //
 // A sum of floats depends on its order, and faces are to come in one order however invocations run: each work group has a
 // stretch of the buffer and a draw call of its own, and in it a face stands behind those with lower numbers.

@@ -9,7 +9,6 @@ layout(std430, binding = 5) readonly restrict buffer Draws { Draw draws[]; };
 
 uniform Light light;
 uniform mat4 world_to_lattice;   // to the clip space of the lattice's pixels
-uniform float nearest;           // depth at which OpenGL clips faces
 flat out vec4 face_plane;        // normal, and the eye's distance times its length; 0 for all of the picture
 flat out float face_volumes;     // see shadow_faces/buffers.glsl; for all of the picture how bright it is without faces
 
@@ -30,9 +29,6 @@ void main() {
         // the second triangle of a cap is nowhere
         vec3 v = number == 0 ? face.a.xyz : number == 1 ? face.b.xyz : face.c.xyz;
         gl_Position = number < 3 ? world_to_lattice * vec4(v, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);
-        // from there to the near plane
-        float near = clip_planes.x;
-        if (number < 3) gl_Position.z = (gl_Position.w * (near + nearest) - 2.0 * near * nearest) / (near - nearest);
         vec3 normal = cross(face.b.xyz - face.a.xyz, face.c.xyz - face.a.xyz);
         face_plane = vec4(normal, dot(normal, face.a.xyz - eye));
         return;
