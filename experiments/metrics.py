@@ -65,7 +65,8 @@ def measure(test: Image, reference: Image, standard_error: Image | None = None) 
     Parameters
     ----------
     test, reference : (H, W, 3)    linear Rec.709
-    standard_error : (H, W, 3)     of the reference; None where it is not known, and then nothing is subtracted
+    standard_error : (H, W, 3)     of the reference's noise, whose variance the bias leaves out; None where
+                                   nothing is subtracted: it is not known, or the reference is not sampled
 
     Raises
     ------

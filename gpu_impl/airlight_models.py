@@ -62,10 +62,11 @@ class AirlightShader:
     any_light : bool              whether it takes directional lights, and lights outside a bounded medium
     generated : callable          texts of the includes that are computed for a phase function, by name
     table : callable or None      float32 values (rows, columns[, components]) for a phase function, which the shader
-                                  reads as `uniform sampler2D airlight_table`: texture() interpolates, texelFetch() does not
-    point_samples : bool          whether it samples points of a piece, so that it is as accurate as its pieces are short
-    depth_only : bool             whether it takes the light to be all along the ray as it is at the eye's place, so that
-                                  nothing of what a spot sends in each direction counts but where its cone ends
+                                  reads as `uniform sampler2D airlight_table`: texture() interpolates, and
+                                  texelFetch() does not
+    point_samples : bool          whether it samples points of a piece, so that it is as accurate as pieces are short
+    depth_only : bool             whether it takes the light to be all along the ray as it is at the eye's place, so
+                                  that of what a spot sends in each direction nothing counts but where its cone ends
     """
 
     source: str

@@ -37,8 +37,8 @@ class Found:
     end: Array
 
 
-# scene, which of its lights, positions in the image (h, w, 2) [pixel], where OpenGL has the rays through them end (h, w)
-# [scene unit along `Camera.rays`] -> what is lit of those rays; a finder may know their ends better
+# scene, which of its lights, positions in the image (h, w, 2) [pixel], ends (h, w): where OpenGL has the rays through
+# them end [scene unit along `Camera.rays`] -> what is lit of those rays; a finder may know their ends better
 Finder = Callable[[Scene, int, Array, Array], Found]
 
 

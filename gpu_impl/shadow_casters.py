@@ -91,8 +91,8 @@ class ShadowCasters:
     Attributes
     ----------
     faces : buffer         of the volumes that were found last; see shaders/shadow_faces/buffers.glsl
-    draw_calls : buffer    of all of the picture, once, and of the faces, as glMultiDrawArraysIndirect takes them; and how
-                           many volumes hold the eye
+    draw_calls : buffer    of all of the picture, once, and of the faces, as glMultiDrawArraysIndirect takes them; and
+                           how many volumes hold the eye
     draws : int            how many calls
     """
 

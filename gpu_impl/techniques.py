@@ -40,8 +40,8 @@ CHOICES: dict[str, Collection[object]] = {
 # the least and the most of the others
 RANGES = {"steps": (1, 1 << 20), "shadow_map": (1, 1 << 14)}
 CELL_STEPS = 128
-# So near to a light, fog that is all lit as it is at the eye comes out ten times too bright: measured 9.3 at 1 / 40 of a
-# mean free path in front of a point light, and as much more as the light is nearer.
+# So near to a light, fog that is all lit as it is at the eye comes out ten times too bright: measured 9.3 at 1 / 40 of
+# a mean free path in front of a point light, and as much more as the light is nearer.
 CLOSE = 40
 
 

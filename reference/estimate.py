@@ -82,6 +82,10 @@ class Reference:
             return np.hypot(self.standard_error("surface"), self.standard_error("scattering"))
         return self.estimate.standard_error[layer]
 
+    def noise(self, layer: str) -> np.ndarray | None:
+        """Standard error of what was sampled, (H, W, 3); None of a deterministic reference, which has no noise."""
+        return None if self.estimate.stopped_by == "exact" else self.standard_error(layer)
+
     @property
     def layers(self) -> dict[str, np.ndarray]:
         """Every array by the name that its layer has in an EXR file; errors as "standard_error.scattering"."""

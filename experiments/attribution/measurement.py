@@ -89,7 +89,8 @@ def attribute(pictures: Pictures, technique: Technique, reference: Reference, te
     Raises
     ------
     InputError
-        The picture has fewer than `LEAST_PIXELS`, the reference is of another scene, or the technique cannot draw the scene, or not with some parts replaced.
+        The picture has fewer than `LEAST_PIXELS`, the reference is of another scene, or the technique cannot draw the
+        scene, or not with some parts replaced.
     """
     if reference.scene_digest != pictures.scene.digest:
         raise InputError(

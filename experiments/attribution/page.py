@@ -53,8 +53,8 @@ what the reference and the exact combination disagree on.
 
 {surfaces}
 
-What errors of a known kind are charged to is tried by `airlight attribute --planted`. A coarse shadow map does not belong
-to that part alone with every technique: {shadow_maps}.
+What errors of a known kind are charged to is tried by `airlight attribute --planted`. A coarse shadow map is not
+charged to that part alone with every technique: {shadow_maps}.
 
 ## Pixel by pixel
 

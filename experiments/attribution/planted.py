@@ -30,11 +30,11 @@ LEAST = 0.8
 LEAST_CHANGE = 0.5
 SIZE = (48, 48)
 FLIPPED = "quadrature:flipped-g"
-# of the change by a shadow map of 128 x 128 in place of 1024 x 1024, in the part of that name, measured on the sphere: the
-# pieces that a search finds change with the map's texels too, and what they do together is shared out
+# of the change by a shadow map of 128 x 128, in the part of that name, measured on the sphere: what a search or a march
+# misses changes with the map's texels too, and what the two do together is shared out
 SHADOW_MAPS = (
-    "it has 87 % of what 128 x 128 texels do to Weng2010, 80 % with lit_intervals:unbounded+one_ei at 1024 steps, 66 % with "
-    "Nishita1987 at 256 steps, and Chen2011's picture hardly changes"
+    "it has 87 % of what 128 x 128 texels do to Weng2010, 80 % with lit_intervals:unbounded+one_ei at 1024 steps, 66 % "
+    "with Nishita1987 at 256 steps, and Chen2011's picture hardly changes"
 )
 
 

@@ -86,12 +86,10 @@ def attribution_table(found: Sequence[Attribution]) -> Table:
         cells = [_cell(one, there[part]) if part in there else "-" for part in PARTS]
         table.add_row(one.label, told_rms(one, one.split.together), *cells, told_rms(one, one.split.remains))
     reasons = dict.fromkeys(f"{part}: {reason}" for one in found for part, reason in one.parts.left_out.items())
+    doubt = "bound by the reference's error" if found[0].deterministic else "standard error by the reference's noise"
     table.caption = (
         "RMS: root of what all parts have together, over the reference's mean, and of what remains with all of them "
-        f"exact. +-: {'a bound on' if found[0].deterministic else 'standard error by'} "
-        f"the reference's {'error' if found[0].deterministic else 'noise'}. {other_surfaces(found)} "
-        + f"-: {'; '.join(reasons)}."
-        * bool(reasons)
+        f"exact. +-: {doubt}. {other_surfaces(found)}" + f" -: {'; '.join(reasons)}." * bool(reasons)
     )
     return table
 

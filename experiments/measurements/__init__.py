@@ -14,7 +14,8 @@ Value = float | int | str | None
 
 # by the names that suites call them; imported when they are asked for
 MEASUREMENTS = {
-    name: f"experiments.measurements.{name}" for name in ("errors", "regions", "banding", "flicker", "timing", "counts")
+    name: f"experiments.measurements.{name}"
+    for name in ("errors", "same_surface", "regions", "banding", "flicker", "timing", "counts")
 }
 
 

@@ -15,7 +15,7 @@ def errors(shot: Shot) -> dict[str, Value]:
     columns: dict[str, Value] = {}
     for layer in LAYERS:
         pictures = getattr(shot.frame, layer), getattr(shot.reference, layer)
-        found = measure(*pictures, shot.reference.standard_error(layer))
+        found = measure(*pictures, shot.reference.noise(layer))
         columns |= {f"{layer}.{name}": value for name, value in asdict(found).items()}
     return columns
 

@@ -44,11 +44,13 @@ def regions(shot: Shot) -> dict[str, Value]:
     is of all such pixels. The others are None where a region has none, and all where the reference is black.
     """
     frame, truth, noise = shot.frame, shot.reference.scattering, shot.reference.standard_error("scattering")
-    return measure_regions(frame.scattering, truth, noise, split(frame.depth, shot.scene.camera, truth, noise))
+    parts = split(frame.depth, shot.scene.camera, truth, noise)
+    sampled = shot.reference.noise("scattering")
+    return measure_regions(frame.scattering, truth, np.zeros_like(truth) if sampled is None else sampled, parts)
 
 
 def measure_regions(test: Image, truth: Image, noise: Image, parts: dict[str, Mask]) -> dict[str, Value]:
-    """Errors in given regions, masks (H, W), by their names; `noise` is the truth's standard error, all (H, W, 3)."""
+    """Errors in regions, masks (H, W), by their names; `noise` is the truth's standard error or 0; all (H, W, 3)."""
     test, truth, noise = (np.asarray(image, np.float64) for image in (test, truth, noise))
     fog = (test != 0) | (truth != 0)
     columns: dict[str, Value] = {f"{name}.{column}": None for name in parts for column in COLUMNS}

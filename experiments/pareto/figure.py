@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 # ours has a colour and a mark of its own
 *COLOURS, OUR_COLOUR = OKABE_ITO
 MARKS, OUR_MARK = "osvD^PX", "*"
-STRENGTH = {Standing.FRONT: 1.0, Standing.UNDECIDED: 1.0, Standing.BEHIND: 0.35}
+STRENGTH = {Standing.FRONT: 1.0, Standing.BY_MEDIAN: 1.0, Standing.UNDECIDED: 1.0, Standing.BEHIND: 0.35}
 CAPTION = """{where}: error against the time of a frame{mean}, left by {left}, right by {right}. The line is the front,
-its members numbered from the cheapest; hollow points are not to be told apart from it, pale ones are behind. Bars are
-the intervals of the costs."""
+its members numbered from the cheapest; hollow points are not to be told apart from it or are on it by the median alone,
+pale ones are behind. Bars are the intervals of the costs."""
 Style = tuple[str, str]
 
 
@@ -94,7 +94,7 @@ def _draw(panel: Axes, points: Sequence[Point], families: Mapping[str, str], sty
             color=colour,
             marker=mark,
             ms=9 if mark == OUR_MARK else 5.5,
-            mfc="white" if where == Standing.UNDECIDED else colour,
+            mfc="white" if where in (Standing.UNDECIDED, Standing.BY_MEDIAN) else colour,
             alpha=STRENGTH[where],
             elinewidth=0.8,
             zorder=2 if where == Standing.BEHIND else 3,

@@ -30,6 +30,7 @@ class Standing(StrEnum):
     """Where a point stands, as tables say it."""
 
     FRONT = "front"
+    BY_MEDIAN = "front, by the median"
     UNDECIDED = "not to be told apart"
     BEHIND = "behind"
 
@@ -54,11 +55,15 @@ def front(points: Sequence[Point]) -> list[Point]:
 def standing(point: Point, points: Sequence[Point]) -> Standing:
     """Where a point stands among all.
 
+    One that none dominates is on the front for sure if no other that errs no more may be as cheap, by the intervals of
+    both; else it is there by the medians, and what is as good may have put it behind.
+
     A dominated one is behind where a point that errs no more is surely cheaper. Where there is none, it might be
     cheaper than all of those, and on the front: its interval overlaps that of whatever dominates it.
     """
     if not any(dominates(other, point) for other in points):
-        return Standing.FRONT
+        others = [other for other in points if other is not point and other.error <= point.error]
+        return Standing.BY_MEDIAN if any(other.low <= point.high for other in others) else Standing.FRONT
     return Standing.BEHIND if any(surely_dominates(other, point) for other in points) else Standing.UNDECIDED
 
 

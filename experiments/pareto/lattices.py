@@ -2,34 +2,36 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from experiments.markdown import table as markdown_table
 from experiments.pareto.front import Point, Standing, standing
-from experiments.pareto.points import MEASURES, Measure, Scene, geometric_mean, is_ours
+from experiments.pareto.points import MEASURES, Measure, Scene, geometric_mean, is_ours, positive
 from experiments.studies.cells import Row, label
 from experiments.studies.timing import short
+from gpu_impl.techniques import SETTINGS
 
-BEST = """The lattice that serves ours best is **{best}**: on {on} of {all} fronts{ties}.{runner_up} Lattices are ranked
-by the fronts that they are on, each scene's by either measure, and those on as many by error times cost, its geometric
-mean over scenes and measures: as much better for half the error as for half the time. Where a front has several, the
-error or the time that one can afford decides."""
-
-
-# settings that say on which lattice
-LATTICE = ("lattice", "downsample", "upsample")
+BEST = """The lattice and shadow map that serve ours best are **{best}**: on {on} of {all} fronts, {sure} of them for
+sure{ties}.{runner_up}"""
+NONE = """Ours is on no front on any lattice; the least error times cost has {best}."""
+RANKING = """They are ranked by the fronts that they are on, each scene's by either measure, and those on as many by
+error times cost, its geometric mean over scenes and measures: as much better for half the error as for half the time.
+Where a front has several, the error or the time that one can afford decides.{dropped}"""
+DROPPED = " Not ranked, as they have no numbers in some scene: {names}."
+# settings that the words for a lattice and its shadow map have in them
+WORDED = ("lattice", "downsample", "upsample", "shadow_map")
 
 
 @dataclass(frozen=True)
 class Served:
-    """How well one lattice serves ours.
+    """How well one lattice with one size of shadow map serves ours.
 
     Attributes
     ----------
     name : str
-    fronts : int              that it is on, of the scenes' by each measure
+    fronts : int              that it is on, of the scenes' by each measure, for sure or by the medians
+    sure : int                of those
     undecided : int           from which it is not to be told apart
     errors : tuple of float   geometric mean over the scenes, by measure
     cost : float              the same of the cost [ms]
@@ -38,53 +40,51 @@ class Served:
 
     name: str
     fronts: int
+    sure: int
     undecided: int
     errors: tuple[float, ...]
     cost: float
     product: float
 
 
-def lattice_of(row: Row) -> str:
-    """A row's lattice in words: which, how coarse, and how values come to all pixels where the grid has a choice."""
-    if row["downsample"] == 1 and row["lattice"] == "grid":
-        return "grid, every pixel"
+def name_of(row: Row) -> str:
+    """A row's lattice and shadow map in words: which lattice, how coarse, how the grid fills the pixels between."""
     words = f"{row['lattice']}, N = {row['downsample']}"
-    return f"{words}, {row['upsample']}" if row["lattice"] == "grid" else words
+    if row["lattice"] == "grid":
+        words = "grid, every pixel" if row["downsample"] == 1 else f"{words}, {row['upsample']}"
+    changed = label(row, *WORDED).removeprefix(label(row, *SETTINGS))
+    return f"{words}, map {row['shadow_map']}{changed}"
 
 
-def served(scenes: Sequence[Scene]) -> list[Served]:
-    """Every lattice that ours ran on in each scene, with one set of other settings, the best first."""
-    ours = [[row for row in scene.rows if is_ours(row)] for scene in scenes]
-    with_ours = [scene for scene, rows in zip(scenes, ours, strict=True) if rows]
-    # that of the most rows: shadow maps of other sizes, say, ran on the full grid alone
-    counted = Counter(label(row, *LATTICE) for rows in ours for row in rows)
-    if not counted:
-        return []
-    settings = counted.most_common(1)[0][0]
-    names = [dict.fromkeys(_candidates(scene, settings)) for scene in with_ours]
-    everywhere = [name for name in names[0] if all(name in found for found in names)]
-    found = (_served(name, settings, with_ours) for name in everywhere)
-    return sorted(found, key=lambda one: (-one.fronts, one.product, one.name))
+def served(scenes: Sequence[Scene]) -> tuple[list[Served], list[str]]:
+    """Every lattice with every map that ours ran with in each scene, the best first, and the names of the others."""
+    found = [names for scene in scenes if (names := _candidates(scene))]
+    with_ours = [scene for scene in scenes if _candidates(scene)]
+    every = dict.fromkeys(name for names in found for name in names)
+    ranked = [_served(name, with_ours) for name in every if all(name in names for names in found)]
+    dropped = [name for name in every if any(name not in names for names in found)]
+    return sorted(ranked, key=lambda one: (-one.fronts, one.product, one.name)), dropped
 
 
-def _candidates(scene: Scene, settings: str) -> dict[str, str]:
-    """The lattices of ours with these other settings, and the labels of their rows."""
-    mine = [row for row in scene.rows if is_ours(row) and label(row, *LATTICE) == settings]
-    return {lattice_of(row): label(row) for row in mine}
+def _candidates(scene: Scene) -> dict[str, str]:
+    """Lattices and maps of ours, and the labels of their rows."""
+    return {name_of(row): label(row) for row in scene.rows if is_ours(row)}
 
 
-def _served(name: str, settings: str, scenes: Sequence[Scene]) -> Served:
+def _served(name: str, scenes: Sequence[Scene]) -> Served:
     points: dict[Measure, list[Point]] = {measure: [] for measure in MEASURES}
     stands: list[Standing] = []
     for scene in scenes:
-        wanted = _candidates(scene, settings)[name]
+        wanted = _candidates(scene)[name]
         for measure, mine in points.items():
             every = scene.points(measure)
-            mine += [point for point in every if point.name == wanted]
-            stands.append(standing(mine[-1], every))
+            (place,) = (place for place, point in enumerate(every) if point.name == wanted)
+            stands.append(standing(every[place], every))
+            mine.append(positive(every)[place])
     both = [point for mine in points.values() for point in mine]
     return Served(
         name,
+        stands.count(Standing.FRONT) + stands.count(Standing.BY_MEDIAN),
         stands.count(Standing.FRONT),
         stands.count(Standing.UNDECIDED),
         tuple(geometric_mean(point.error for point in mine) for mine in points.values()),
@@ -95,7 +95,7 @@ def _served(name: str, settings: str, scenes: Sequence[Scene]) -> Served:
 
 def lattice_section(scenes: Sequence[Scene]) -> str:
     """The ranking as a table, and the best in a sentence; empty where ours has no lattice in every scene."""
-    ranking = served(scenes)
+    ranking, dropped = served(scenes)
     if not ranking:
         return ""
     fronts = len(MEASURES) * sum(any(map(is_ours, scene.rows)) for scene in scenes)
@@ -103,20 +103,31 @@ def lattice_section(scenes: Sequence[Scene]) -> str:
         [
             one.name,
             f"{one.fronts} of {fronts}",
+            str(one.sure),
             str(one.undecided),
-            *(measure.shape.format(error) for measure, error in zip(MEASURES, one.errors, strict=True)),
+            *(measure.shown(error) for measure, error in zip(MEASURES, one.errors, strict=True)),
             short(one.cost),
         ]
         for one in ranking
     ]
-    headings = ["lattice", "on the front", "not to be told apart", *(measure.short for measure in MEASURES), "ms"]
+    headings = [
+        "lattice and map",
+        "on the front",
+        "for sure",
+        "not to be told apart",
+        *(measure.short for measure in MEASURES),
+        "ms",
+    ]
     best, others = ranking[0], ranking[1:]
     equal = [one.name for one in others if one.fronts == best.fronts]
-    sentence = BEST.format(
+    sentence = BEST if best.fronts else NONE
+    sentence = sentence.format(
         best=best.name,
         on=best.fronts,
         all=fronts,
+        sure=best.sure,
         ties=f", as {' and '.join(equal)}, and of these with the least error times cost" if equal else "",
         runner_up=f" Next is {others[0].name}, on {others[0].fronts}." if others and not equal else "",
     )
-    return f"### Its lattice\n\n{sentence}\n\n{markdown_table(headings, lines)}"
+    ranked_by = RANKING.format(dropped=DROPPED.format(names="; ".join(dropped)) if dropped else "")
+    return f"### Its lattice\n\n{sentence} {ranked_by}\n\n{markdown_table(headings, lines)}"

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,22 +21,27 @@ class Measure:
     column : str     of the run's table
     short : str      for headings
     what : str       for axes and text
-    shape : str      how a number is shown
+    shown : callable how a number is shown
     """
 
     column: str
     short: str
     what: str
-    shape: str
+    shown: Callable[[float], str]
 
 
 BIAS = Measure(
-    "scattering.bias",
+    "same_surface.bias",
     "bias",
-    "root mean square error of the airlight, the reference's own variance taken off [radiance]",
-    "{:.3g}",
+    "root mean square error of the airlight [radiance], the variance of a sampled reference taken off",
+    "{:.3g}".format,
 )
-PERCENTILE_95 = Measure("scattering.rel_95", "95 %", "95th percentile of the airlight's relative error", "{:.3%}")
+PERCENTILE_95 = Measure(
+    "same_surface.rel_95",
+    "95 %",
+    "95th percentile of the airlight's relative error",
+    lambda error: f"{100 * error:.3g} %",
+)
 MEASURES = (BIAS, PERCENTILE_95)
 INTERVAL = ("timing.ratio_low", "timing.ratio_50", "timing.ratio_high")
 # parameters that the name of a phase function has in it
@@ -135,11 +140,11 @@ def over_all(scenes: Sequence[Scene], measure: Measure) -> list[Point]:
     """Geometric means, over the scenes, of the techniques that have a point in each of them.
 
     The ends of an interval are the means of the scenes' ends, which encloses the mean more surely than each encloses
-    its own. A mean in which one error is 0 is 0.
+    its own. Errors are those of `positive`.
     """
     found: dict[str, list[Point]] = {}
     for scene in scenes:
-        for point in scene.points(measure):
+        for point in positive(scene.points(measure)):
             found.setdefault(point.name, []).append(point)
     return [
         Point(
@@ -152,6 +157,12 @@ def over_all(scenes: Sequence[Scene], measure: Measure) -> list[Point]:
         for name, points in found.items()
         if len(points) == len(scenes)
     ]
+
+
+def positive(points: Sequence[Point]) -> list[Point]:
+    """The same with half of the least other error in place of 0, of which no geometric mean is to be had."""
+    least = min((point.error for point in points if point.error > 0), default=0.0)
+    return [replace(point, error=point.error or 0.5 * least) for point in points]
 
 
 def geometric_mean(values: Iterable[float]) -> float:

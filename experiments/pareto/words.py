@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from experiments.intervals import CONFIDENCE
 from experiments.markdown import table as markdown_table
+from experiments.measurements.same_surface import ALIKE
 from experiments.pareto.front import Point, Standing, front, standing
 from experiments.pareto.lattices import lattice_section
 from experiments.pareto.ours import stands, verdict
@@ -19,10 +20,16 @@ ran in {rounds} rounds with one baseline ({baseline}); a cost is the ratio of th
 that scene, with the interval that holds it {confidence:.0%} of the time (sign test). Other processes kept {others}
 processors busy meanwhile (median and most over the cases). {reference}
 
-A technique with its settings is on the *front* if no other errs no more and costs no more. It is *not to be told
+Errors are taken over the pixels in which technique and reference see the same surface, by depths within {alike:.0%}:
+{apart}. The others see what is in front in one and what is behind in the other, in which no technique has any
+part.{zeros}
+
+A technique with its settings is on the *front* if no other errs no more and costs no more: *by the median* where one
+that errs no more may cost as little by the intervals of both, and for sure where none may. It is *not to be told
 apart* from the front if another does, but none that errs no more is cheaper by its interval. All others are behind: one
 that errs no more is surely cheaper. The fronts are taken once by {measures}."""
-DETERMINISTIC = "The references are deterministic: errors have no noise."
+DETERMINISTIC = "The references are deterministic: errors have no noise, and nothing is taken off them."
+ZEROS = """ An error of 0 counts in means as half of the least other one of its scene."""
 NOISY = "The references have noise (relative standard errors of {noise}), and of errors below it nothing is known."
 
 
@@ -62,6 +69,9 @@ def _introduction(scenes: Sequence[Scene]) -> str:
         baseline=listed("timing.baseline"),
         confidence=CONFIDENCE,
         others=f"{others[len(others) // 2]:.2f} and {others[-1]:.2f}",
+        alike=ALIKE,
+        apart=f"{span((row['same_surface.others'] for row in rows), '{}')} pixels of a picture are left out",
+        zeros=ZEROS if any(row[measure.column] == 0 for row in rows for measure in MEASURES) else "",
         reference=NOISY.format(noise=span(noise, "{:.2%}")) if noise else DETERMINISTIC,
         measures=" and once by ".join(f"*{measure.short}*, the {measure.what}" for measure in MEASURES),
     )
@@ -72,7 +82,7 @@ def _fronts(scenes: Sequence[Scene]) -> str:
     lines = []
     for measure in MEASURES:
         for name, points in _with_mean(scenes, measure):
-            lines += [[name, measure.short, p.name, measure.shape.format(p.error), _cost(p)] for p in front(points)]
+            lines += [[name, measure.short, p.name, measure.shown(p.error), _cost(p)] for p in front(points)]
             undecided = [p.name for p in points if standing(p, points) == Standing.UNDECIDED]
             if undecided:
                 lines.append([name, measure.short, f"*not to be told apart: {'; '.join(undecided)}*", "", ""])
@@ -98,7 +108,7 @@ def _every_case(rows: Sequence[Row]) -> str:
         by_measure = [scene.points(measure) for measure in MEASURES]
         for number, row in enumerate(scene.rows):
             points = [mine[number] for mine in by_measure]
-            errors = [m.shape.format(p.error) for m, p in zip(MEASURES, points, strict=True)]
+            errors = [m.shown(p.error) for m, p in zip(MEASURES, points, strict=True)]
             where = [str(standing(p, mine)) for p, mine in zip(points, by_measure, strict=True)]
             lines.append([scene.name, label(row), *errors, _cost(points[0]), *where])
         lines += [

@@ -94,7 +94,7 @@ def measure_scene(
             counts = renderer.counts(one.technique)
             found[name] = replace(
                 one,
-                metrics=measure(frame.scattering, reference.scattering, reference.standard_error("scattering")),
+                metrics=measure(frame.scattering, reference.scattering, reference.noise("scattering")),
                 counts={counter: float(count.mean()) for counter, count in counts.items()},
                 rays=next(iter(counts.values())).size,
             )

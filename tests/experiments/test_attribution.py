@@ -32,6 +32,8 @@ from experiments.attribution.page import FILES
 from experiments.attribution.pictures import Pictures
 from experiments.attribution.planted import LEAST, PLANTED, Planted, planted_table, try_planted
 from experiments.attribution.shapley import coalitions
+from experiments.attribution.split import Share
+from experiments.attribution.tables import other_surfaces
 from gpu_impl.shader_source import SHADERS
 from gpu_impl.techniques import TECHNIQUES, Technique, find_technique
 from scenes.errors import InputError
@@ -98,7 +100,7 @@ def test_all_parts_of_every_technique_become_the_same_cell(name: str, ball: Scen
         ("given+quadrature", {}, {MODEL, VISIBILITY, SHADOW_MAP, LATTICE}),
         ("exact+one_ei", {"downsample": 2}, {VISIBILITY}),
         ("uniform_march+riemann", {"shadow_source": "rays"}, {SHADOW_MAP, LATTICE}),
-        ("James2003", {}, {SHADOW_MAP, LATTICE, FLOAT32}),
+        ("James2003", {}, {SHADOW_MAP, LATTICE}),
         ("Dobashi2002", {}, {LATTICE, FLOAT32}),
         ("Chen2011", {}, {MODEL}),
     ],
@@ -166,6 +168,11 @@ def test_float64_through_another_lattice(pictures: Pictures) -> None:
     assert rounding(pictures, find_technique("Chen2011", shadow_map=128)) < 3e-6
 
 
+def test_float64_of_depth_fog(pictures: Pictures) -> None:
+    # pieces of the whole ray behind each face, of either sign, whose sum is smaller than they are; measured: 4e-7
+    assert rounding(pictures, find_technique("James2003")) < 2e-6
+
+
 def test_float64_weighs_pieces(pictures: Pictures) -> None:
     # a shifted march weighs what is left of its cut step; measured: 5e-7
     technique = find_technique("uniform_march:blue_noise+riemann", steps=16, shadow_map=128)
@@ -181,12 +188,14 @@ def test_many_pieces_are_evaluated_a_chunk_at_a_time(pictures: Pictures, monkeyp
 
 def test_exact_parts_are_the_reference(ball: Scene, pictures: Pictures) -> None:
     truth = face.reference(ball, deterministic=True).scattering
-    for name in ("Weng2010", "Nishita1987", "James2003"):
+    for name in ("Weng2010", "Nishita1987", "James2003", "Dobashi2002"):
         technique = find_technique(name)
         found = pictures.draw(technique, frozenset(parts_of(technique, ball).there))
-        # with float32, or without where that is left out
-        tolerance = 1e-12 if name != "James2003" else 2e-6
-        np.testing.assert_allclose(found, truth, rtol=tolerance, atol=tolerance * truth.mean())
+        # rays end where OpenGL's do, whose depth is off most at the ball's rim; measured: 1.1e-5
+        np.testing.assert_allclose(found, truth, rtol=4e-5)
+        if name != "Dobashi2002":
+            # with float32; half of the rays end on the far plane. Measured: 1e-10
+            assert np.percentile(np.abs(found / truth - 1), 50) < 1e-9
 
 
 def test_point_samples_in_steps() -> None:
@@ -198,8 +207,8 @@ def test_point_samples_in_steps() -> None:
         for parts in ((VISIBILITY,), (VISIBILITY, SHADOW_MAP)):
             assert replaced(march, exact(*parts)).visibility == ("exact:steps", "given:steps")[len(parts) - 1]
             for more in ((), (FLOAT32,)):
-                # measured: LATER
-                np.testing.assert_allclose(pictures.draw(march, exact(*parts, *more)), own, rtol=1e-5)
+                # measured: 7e-7
+                np.testing.assert_allclose(pictures.draw(march, exact(*parts, *more)), own, rtol=3e-6)
         # one sample of all of the ray is another picture
         assert (np.abs(pictures.draw(find_technique("exact+riemann", steps=16), exact()) / own - 1) > 0.1).mean() > 0.5
 
@@ -221,10 +230,10 @@ def test_a_model_of_ones_own_that_samples_points_keeps_its_share(
             shares[says] = {part: own.split.fraction(share) for part, share in own.split.parts.items()}
     found = attribute(pictures, find_technique("Nishita1987", **MARCH), truth).split
     registered = {part: found.fraction(found.parts[part]) for part in shares[""]}
-    # measured: LATER
-    assert shares[", point_samples = true"] == pytest.approx(registered, abs=1e-5)
-    # one sample of pieces that are no longer steps
-    assert shares[""][MODEL] > 2 * registered[MODEL]
+    # measured: 7e-6, which is float32's share
+    assert shares[", point_samples = true"] == pytest.approx(registered, abs=3e-5)
+    # one sample of a whole lit interval is charged to the model 880 times over
+    assert shares[""][MODEL] > 100 * registered[MODEL]
 
 
 def test_other_surfaces_are_charged_to_no_part() -> None:
@@ -233,12 +242,17 @@ def test_other_surfaces_are_charged_to_no_part() -> None:
     with Pictures(scene) as pictures:
         found = attribute(pictures, find_technique("exact+quadrature"), truth)
         elsewhere = pictures.other_surfaces
-    # measured: LATER
-    assert 0 < elsewhere.sum() < 20
-    assert found.in_other_surfaces > 0.5
-    share = found.split.parts[SHADOW_MAP].signed
-    assert np.sum(share[elsewhere] ** 2) < 0.1 * np.sum(share**2)
-    assert np.sum(found.split.remains.signed[elsewhere] ** 2) > 0.99 * np.sum(found.split.remains.signed**2)
+    # one pixel, with 99.7 % of the squared error
+    assert 0 < elsewhere.sum() < 5
+    assert found.in_other_surfaces > 0.9
+
+    def part_elsewhere(share: Share) -> float:
+        return float(np.sum(share.signed[elsewhere] ** 2) / np.sum(share.signed**2))
+
+    # measured: 0 and 1 - 2e-11
+    assert part_elsewhere(found.split.parts[SHADOW_MAP]) < 0.1
+    assert part_elsewhere(found.split.remains) > 0.999
+    assert "In 1 of 2304 pixels" in other_surfaces([found])
 
 
 @pytest.mark.parametrize(
@@ -278,18 +292,14 @@ def test_a_planted_error_shows_up_in_its_own_part_and_in_no_other(planted: Plant
 
 
 def test_what_hardly_changes_the_picture_is_charged_to_no_part() -> None:
-    planted = Planted(
-        "two texels more", SHADOW_MAP, "lit_intervals+quadrature", "lit_intervals+quadrature", {}, {"shadow_map": 1026}
-    )
+    planted = Planted("two texels more", SHADOW_MAP, "Weng2010", "Weng2010", {}, {"shadow_map": 1026})
     outcome = try_planted(planted)
     assert not outcome.is_noticed
     assert np.isnan(outcome.own_share)
-    drawn = Console(width=150, record=True, file=StringIO())
-    drawn.print(planted_table([outcome]))
-    assert (
-        "two texels more  shadow map               -           -            -         -         -"
-        in drawn.export_text()
-    )
+    told = Console(width=150, record=True, file=StringIO())
+    told.print(planted_table([outcome]))
+    (line,) = (line for line in told.export_text().splitlines() if "two texels" in line)
+    assert line.split()[:-1] == [*["two", "texels", "more", "shadow", "map"], *"-----"]
 
 
 def test_a_cell_that_a_control_cannot_take_is_told(
@@ -329,7 +339,8 @@ def test_the_command_writes_its_page(airlight, tmp_path: Path) -> None:
         assert values["parts together"] + values["remains"] == pytest.approx(values["whole"], rel=1e-9)
         assert one["squared_error_with_exact"][""] == pytest.approx(values["whole"], rel=1e-12)
     assert len(weng["squared_error_with_exact"]) == 16
-    assert set(james["left_out"]) == {SHADOW_MAP, LATTICE, FLOAT32}
+    assert set(james["left_out"]) == {SHADOW_MAP, LATTICE}
+    assert "In none of the 1024 pixels OpenGL and the reference see surfaces" in page
 
 
 @pytest.mark.parametrize(

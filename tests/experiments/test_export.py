@@ -189,6 +189,13 @@ def test_the_boundary_of_the_fog_stops_no_ray(tmp_path: Path) -> None:
     assert sorted(map(tuple, np.round(planes, 6))) == sorted(
         (*(sign * axis), 1.5) for axis in np.eye(3) for sign in (1, -1)
     )
+    # rebuilt by the words beside them
+    words = description["medium"]["boundary"]["convention"]
+    relation = {"<=": np.less_equal, ">=": np.greater_equal}[words.split("n . x ")[1].split(" o ")[0]]
+    points = np.random.default_rng(2).uniform(-3, 3, (500, 3))
+    inside = relation(points @ np.array(planes)[:, :3].T, np.array(planes)[:, 3]).all(axis=1)
+    np.testing.assert_array_equal(inside, (np.abs(points) < 1.5).all(axis=1))
+    assert 20 < inside.sum() < 200
 
 
 def test_the_command_writes_it_and_estimates_nothing(airlight, tmp_path: Path) -> None:

@@ -44,6 +44,12 @@ def test_values_for_a_screen() -> None:
     assert fits_better(encoded(DIM), DIM).startswith("decoded from sRGB to linear: ")
 
 
+@pytest.mark.parametrize("darker", [0.3, 1.0])
+def test_gamma_2_2_is_nearer_to_an_encoding_than_to_an_exposure(darker: float) -> None:
+    image = np.minimum(darker * SCENE, 1)
+    assert fits_better(image ** (1 / 2.2), image).startswith("decoded from sRGB to linear")
+
+
 @pytest.mark.parametrize(("turn", "scale"), [*itertools.product(TURNS, SCALES)])
 def test_several_at_once(turn: str, scale: str) -> None:
     assert fits_better(SCALES[scale] * TURNS[turn](SCENE), SCENE).startswith(f"{turn} and {scale}: ")

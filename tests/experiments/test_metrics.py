@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
+from types import SimpleNamespace
 
 import flip_evaluator
 import numpy as np
 import pytest
 
 from experiments import flip
+from experiments.compare import compare
+from experiments.pictures import Picture
 from experiments.metrics import measure, signed_relative_error
 from experiments.sheet import display, summary, write_sheet
+from reference.estimate import Reference
+from reference.goal import Goal
 from scenes.errors import InputError
 
 
@@ -230,3 +235,19 @@ def test_flip_works_without_a_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     picture = np.ones((16, 16, 3), np.float32)
     monkeypatch.setenv("XDG_CACHE_HOME", "/proc/nowhere")
     assert flip.hdr_flip(picture, picture) == 0
+
+
+def test_the_bound_of_a_deterministic_reference_is_no_noise() -> None:
+    bound = np.full((4, 4, 3), 0.5)
+    images = {"surface": np.zeros((4, 4, 3)), "scattering": np.ones((4, 4, 3))}
+    errors = {"surface": np.zeros((4, 4, 3)), "scattering": bound}
+    for stopped_by, bias in (("exact", 0.1), ("goal", 0.0)):
+        estimate = SimpleNamespace(mean=images, standard_error=errors, stopped_by=stopped_by)
+        made = Reference(estimate, {"scene": ""}, Goal())
+        assert made.standard_error("scattering") is bound
+        assert measure(images["scattering"] + 0.1, made.scattering, made.noise("scattering")).bias == pytest.approx(
+            bias
+        )
+        assert compare(images["scattering"] + 0.1, made, layer="scattering").bias == pytest.approx(bias)
+        read = Picture(Path("a.exr"), made.layers, {"stopped_by": stopped_by})
+        assert compare(test, read, layer="scattering").bias == pytest.approx(bias)

@@ -141,6 +141,16 @@ def test_parts_are_layers(tmp_path: Path) -> None:
     assert three.layers.keys() == {"rgba", "composite", "rest.fog", "rest.depth"}
 
 
+def test_of_two_parts_with_one_layer_the_first_counts(tmp_path: Path) -> None:
+    # a layer of a part, and a part of the layer's whole name
+    named = {f"b.{letter}": plane for letter, plane in zip("RGB", np.moveaxis(COLOUR, 2, 0).copy(), strict=True)}
+    parts = [("a", named), ("a.b", {"RGB": COLOUR + 1})]
+    for order, expected in ((parts, COLOUR), (parts[::-1], COLOUR + 1)):
+        found = [OpenEXR.Part({"type": OpenEXR.scanlineimage}, channels, name) for name, channels in order]
+        OpenEXR.File(found).write(str(tmp_path / "a.exr"))
+        np.testing.assert_array_equal(read_picture(tmp_path / "a.exr").layers["a.b"], expected)
+
+
 def test_other_primaries_are_converted(read) -> None:
     assert not read({"RGB": COLOUR}, chromaticities=REC709).notices
     found = read({"RGB": COLOUR}, chromaticities=ACES)

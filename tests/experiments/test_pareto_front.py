@@ -88,6 +88,16 @@ def test_intervals_that_overlap_leave_it_open(reach: tuple[float, float], expect
     assert standing(better, [better, worse]) == Standing.FRONT
 
 
+def test_what_may_be_as_cheap_puts_it_on_the_front_by_the_median_alone() -> None:
+    mine, better = point("mine", 2.0, 10.0, 1.0), point("better", 1.0, 12.0, 1.0)
+    assert standing(mine, [mine, better]) == Standing.BY_MEDIAN
+    assert standing(mine, [mine, point("better", 1.0, 12.0, 0.9)]) == Standing.FRONT
+    # one that errs more takes nothing from it; twins are both there by the median
+    assert standing(better, [mine, better]) == Standing.FRONT
+    twin = point("twin", 2.0, 10.0)
+    assert standing(twin, [mine, twin]) == standing(mine, [mine, twin]) == Standing.BY_MEDIAN
+
+
 def test_what_is_surely_cheaper_with_more_error_does_not_put_it_behind() -> None:
     cheap, better = point("cheap", 9.0, 1.0), point("better", 1.0, 10.0, 3.0)
     mine = point("mine", 2.0, 11.0, 2.0)

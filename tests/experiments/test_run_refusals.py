@@ -10,7 +10,7 @@ import pytest
 from distributed import LocalCluster
 
 from experiments.gate.references import load_reference
-from experiments.measurements import Measurement, find_measurement
+from experiments.measurements import MEASUREMENTS, Measurement, find_measurement
 from experiments.run import folder as run_folder
 from experiments.run.cluster import QUIET, slots
 from experiments.run.folder import digest_of
@@ -173,7 +173,7 @@ def test_a_cluster_that_is_there_runs_the_cases_and_timings_wait_for_a_quiet_wor
 
 
 def test_timing_is_quiet_and_nothing_else_is() -> None:
-    found = {name: find_measurement(name) for name in ("errors", "regions", "banding", "flicker", "timing", "counts")}
+    found = {name: find_measurement(name) for name in MEASUREMENTS}
     assert all(isinstance(one, Measurement) for one in found.values())
     assert [name for name, one in found.items() if one.needs_quiet] == ["timing"]
 

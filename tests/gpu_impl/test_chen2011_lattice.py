@@ -84,17 +84,22 @@ def test_level_values_stay_level_and_slanted_ones_slanted(name: str, tmp_path) -
     assert off.max() < 0.1
 
 
-def test_values_do_not_cross_a_depth_edge(tmp_path) -> None:
-    """Samples are 1 on a ball and 0 on the background: pixels get the value of what they see."""
-    scene = write_scene(tmp_path, emitters=point(3, 1.5, 0), shapes=sphere(0.1, 0.2, 0, 0.8), size=SIZE)
+WALL = "<shape type='rectangle'><transform name='to_world'><scale value='9'/><translate z='-1'/></transform></shape>"
+
+
+@pytest.mark.parametrize("behind", ["", WALL], ids=["nothing behind", "a wall close behind"])
+def test_values_do_not_cross_a_depth_edge(behind: str, tmp_path) -> None:
+    """Samples are 1 on a ball and 0 behind it: pixels get the value of what they see."""
+    scene = write_scene(tmp_path, emitters=point(3, 1.5, 0), shapes=sphere(0.1, 0.2, 0, 0.8) + behind, size=SIZE)
     with Renderer(scene) as renderer:
         depth = renderer.render(find_technique("Nishita1987", steps=1, shadow_map=8)).depth
-    on_ball = depth < 10
+    on_ball = depth < (5 if behind else 10)
     assert 0.1 < on_ball.mean() < 0.4
     places = positions(scene, 4)
     seen = on_ball[tuple(np.floor(places).astype(int)[..., ::-1].reshape(-1, 2).T)].reshape(places.shape[:2])
     off = np.abs(reconstructed(scene, 4, seen.astype(float)) - on_ball)
-    # pixels whose four samples all see the other; without weights by depth 17 % are off
+    # pixels whose four samples all see the other, measured 0 and 1 %; without weights by depth 17 % are off, and before
+    # the wall 14 % with a SURFACE_SIGMA of 0.2
     assert (off > 0.01).mean() < 0.02
 
 

@@ -258,3 +258,38 @@ def test_every_second_pixel(tmp_path: Path) -> None:
     difference = np.abs(pictures[0].scattering - pictures[1].scattering).max(axis=-1) / pictures[0].scattering.max()
     # measured: 1.5e-4, by which the picture bends from pixel to pixel
     assert np.median(difference) < 1e-3
+
+
+def test_fog_ends_with_its_thinnest_colour(tmp_path: Path) -> None:
+    """Slices reach to where the last of three colours ends, whichever that is."""
+    for sigma_t in ("0.9, 0.5, 0.35", "0.35, 0.5, 0.9"):
+        scene = write_scene(tmp_path, sigma_t=f"<rgb name='sigma_t' value='{sigma_t}'/>", size=(32, 24))
+        frame = drawn(scene, "slices:1", steps=24, shadow_map=8)
+        expected = sum_of_slices(scene, frame.depth.astype(float), 1, 24, np.isfinite)
+        # measured: 3.5e-7
+        assert np.abs(frame.scattering - expected).max() < 2e-6 * expected.max()
+
+
+def test_fog_by_depth_alone_is_lit_alike_in_all_of_a_soft_cone(tmp_path: Path) -> None:
+    """As it is in whole pieces: at the corners as well the model knows nothing of the angle."""
+    scene = write_scene(tmp_path, spot("0.3, 3.5, 0", "0, 0, 0", 24, 12), sphere(0.3, 1.3, 0, 0.4), size=(32, 32))
+    with Renderer(scene) as renderer:
+        sliced, marched = (
+            renderer.render(find_technique(f"{name}+depth_fog", steps=1024)).scattering.astype(float)
+            for name in ("slices:1", "uniform_march")
+        )
+    # measured: 3.5e-3
+    assert np.abs(sliced - marched).mean() < 1e-2 * marched.mean()
+    # and both end with the cone
+    (light,), t_max = scene.lights, scene.camera.rays()[2]
+    begin, end = cone_interval(scene, light.position, light.direction, light.cutoff_angle, t_max)
+    assert not marched[end <= begin].any()
+    assert 0.05 < (end <= begin).mean() < 0.95
+
+
+def test_what_corners_cost_is_not_counted_as_nothing() -> None:
+    with Renderer(load("empty", size=(16, 8))) as renderer:
+        counts = renderer.counts(find_technique("slices+one_ei", steps=8, shadow_map=8))
+    assert counts["pieces"].max() > 0
+    for name in ("exponential_integrals", "exponentials"):
+        assert np.isnan(counts[name]).all()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -217,9 +216,13 @@ def radial(way: np.ndarray, beside: np.ndarray, stored: np.ndarray) -> Walk:
     return Walk(*(part.astype(np.float32) for part in parts), light, stored)
 
 
-def clipped(pieces: Sequence[tuple[float, float]], side: tuple[float, float]) -> list[tuple[float, float]]:
-    cut = [(max(begin, side[0]), min(end, side[1])) for begin, end in pieces]
-    return [piece for piece in cut if piece[0] < piece[1]]
+def unlike_all(told: list[tuple[float, float]], truths: list[list[tuple[float, float]]], end: float) -> float:
+    """Length of the ray that `told` has lit and all of `truths` dark, or the other way round."""
+    cuts = np.unique([0.0, end, *np.ravel(told), *(t for truth in truths for t in np.ravel(truth))])
+    middle = 0.5 * (cuts[1:] + cuts[:-1])
+    lit = [np.sum([(a < middle) & (middle < b) for a, b in one], axis=0, dtype=int) for one in (told, *truths)]
+    lit = [np.broadcast_to(one, middle.shape) for one in lit]
+    return float(np.diff(cuts)[np.all([lit[0] != one for one in lit[1:]], axis=0)].sum())
 
 
 @pytest.mark.parametrize("size", [17, 64])
@@ -234,16 +237,13 @@ def test_rays_through_the_light_read_the_texels_on_both_sides(size: int) -> None
     way = np.tile(ways, (4, 1))
     stored = random.uniform(0.2, 3, (size, 6 * size)).astype(np.float32)
     found, _ = reported(radial(way, beside, stored))
-    # rounding decides which of two texels a ray along their border is in, on either side of the light for itself
+    # rounding decides which of two texels a ray along their border is in, for each of its parts
     tilts = [1e-4 * np.array(tilt) for tilt in itertools.product((-1, 1), repeat=3)]
     truths = [expected(radial(way + tilt, beside, stored)) for tilt in tilts]
-    for ray, at in enumerate(-beside):
-        told = [(begin, begin + length) for begin, length in found[ray]]
-        for side in ((0.0, max(at, 0.0)), (max(at, 0.0), 4.0)):
-            mine = np.array([(begin, end - begin) for begin, end in clipped(told, side)]).reshape(-1, 2)
-            wrong = min(apart(mine, clipped(truth[ray], side)) for truth in truths)
-            # measured 4e-7
-            assert wrong < 2e-6, (way[ray], beside[ray], side)
+    told = [[(begin, begin + length) for begin, length in pieces] for pieces in found]
+    wrong = [unlike_all(mine, [truth[ray] for truth in truths], 4.0) for ray, mine in enumerate(told)]
+    # measured 7.0e-7
+    assert max(wrong) < 2e-6
 
 
 def test_a_buffer_tells_the_same() -> None:
@@ -362,7 +362,7 @@ def test_what_lies_close_before_a_surface_is_not_taken_for_it(tmp_path) -> None:
     length = np.bincount(pieces.cell, weights=pieces.dt, minlength=depth.size)
     wrong = np.abs(length - depth * (1 - dark.mean(-1)))[ends]
     assert (depth * dark.mean(-1))[ends].max() > 0.2
-    print(wrong.max(), np.median(wrong), ends.sum(), (depth * dark.mean(-1))[ends].min())
+    # texels of a 1,000th of the light's distance on rays at a slant: measured 6.8e-3
     assert wrong.max() < 0.02
 
 

@@ -28,6 +28,7 @@ from scenes.model import Light, Scene
 LIGHT = point(0.3, 2.6, 0)
 UPPER, LOWER = Plate(1.9, -1.2, 0.1), Plate(1.5, -0.4, 0.9)
 
+
 def drawn(scene: Scene, technique: str = FACES, **settings: object) -> Frame:
     with Renderer(scene) as renderer:
         return renderer.render(find_technique(technique, shadow_map=4, **settings))

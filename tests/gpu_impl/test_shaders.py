@@ -189,7 +189,9 @@ def compiled_cell(visibility: str, airlight: str, function: Phase, variants: lis
         program = device.program(
             "scattering.frag.glsl",
             strategy.vertex,
-            defines=defines | strategy.defines | {"AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners)}
+            defines=defines
+            | strategy.defines
+            | {"AIRLIGHT_AT_CORNERS": int(strategy.airlight_at_corners)}
             | {"IN_STEPS": int(strategy.in_steps)},
             includes=PARTS
             | {

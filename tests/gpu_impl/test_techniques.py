@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scene_files import spot, write_scene
+from scene_files import point, spot, write_scene
 
 from gpu_impl.airlight_models import AIRLIGHT_MODELS
 from gpu_impl.techniques import find_technique
@@ -61,3 +61,13 @@ def test_a_soft_spot_under_a_closed_form_is_said(tmp_path) -> None:
     assert "lit_intervals+quadrature" in notice
     assert find_technique("lit_intervals+quadrature").notices(soft) == []
     assert find_technique("Weng2010").notices(write_scene(tmp_path, spot("0.3, 3.5, 0", "0, 0, 0", 24, 24))) == []
+
+
+def test_fog_by_depth_alone_beside_a_light_is_said(tmp_path) -> None:
+    """Ten times too bright at a fortieth of a mean free path: the fog's is 10."""
+    beside, away = (write_scene(tmp_path, point(0, 0, 5 - z)) for z in (0.2, 0.4))
+    (notice,) = find_technique("James2003").notices(beside)
+    assert "too bright" in notice
+    assert "shadow_faces+quadrature" in notice
+    assert find_technique("James2003").notices(away) == []
+    assert find_technique("shadow_faces+quadrature").notices(beside) == []

@@ -139,3 +139,14 @@ def test_a_short_piece_shows_the_slope_between_two_samples() -> None:
     # measured: 6.0e-2 and 1.5e-2, where at 64 steps they are 6.4e-2 and 5.9e-2
     assert table > 2 * exact
     assert error(SLIT, "sun2005", 64, 95) < 1.3 * error(SLIT, "quadrature", 64, 95)
+
+
+def test_two_tables_in_one_renderer() -> None:
+    """Each model keeps a table of its own from frame to frame."""
+    chosen = [find_technique(f"bounded_march+{table}", shadow_map=64) for table in ("sun2005:32", "sun2005:512")]
+    with Renderer(shipped(SLIT)) as renderer:
+        together = [renderer.render(technique).scattering for technique in chosen]
+    for technique, image in zip(chosen, together, strict=True):
+        with Renderer(shipped(SLIT)) as renderer:
+            np.testing.assert_array_equal(renderer.render(technique).scattering, image)
+    assert (together[0] != together[1]).any()

@@ -1,4 +1,4 @@
-"""Shadow-volume faces' signed pieces, beside the lit intervals that the reference's rays find; and what casts shadows."""
+"""Shadow-volume faces' signed pieces, beside the lit intervals that the reference's rays find."""
 
 from __future__ import annotations
 

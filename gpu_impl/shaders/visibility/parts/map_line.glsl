@@ -100,7 +100,10 @@ Stretch next_stretch(Stretch stretch, vec3 nearest, vec3 d, Light light, float a
 // Which texel the line is in; one of the tile's whatever is rounded.
 ivec2 texel_at(MapLine line, float along) {
     vec3 position = line.at + along * line.per_along;
-    return clamp(ivec2(floor((0.5 + 0.5 * position.xy / position.z) * float(tile_size))), ivec2(0), ivec2(tile_size - 1));
+    // clamped before it is an integer, which may be too small for it: where two sides of a cube meet at the light
+    if (position.z <= 0.0) position = line.per_along;
+    vec2 texel = floor((0.5 + 0.5 * position.xy / position.z) * float(tile_size));
+    return ivec2(clamp(texel, vec2(0.0), vec2(tile_size - 1)));
 }
 
 // Where the stretch leaves a node in x and in y; NEVER where it goes another way, and at the sides of the tile.
