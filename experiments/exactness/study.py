@@ -143,7 +143,9 @@ def _case(scene: Scene, truth: Reference, sampled: Reference, before: int) -> Ca
     def error(picture: NDArray[np.floating]) -> NDArray[np.float64]:
         return np.abs(picture - expected).max(axis=-1)[lit] / bright[lit]
 
-    fine, *coarse = (find_technique(EXACT, shadow_map=size) for size in (2 * before, before, round((1 - LESS) * before)))
+    fine, *coarse = (
+        find_technique(EXACT, shadow_map=size) for size in (2 * before, before, round((1 - LESS) * before))
+    )
     with open_renderer(scene) as renderer:
         frame, given = (renderer.render(technique) for technique in (fine, find_technique(GIVEN)))
         length, *lengths = (lit_length(renderer.record(technique))[lit.ravel()] for technique in (fine, *coarse))
@@ -167,4 +169,3 @@ def _case(scene: Scene, truth: Reference, sampled: Reference, before: int) -> Ca
         milliseconds,
         {**describe_scene(scene), **describe_frame(frame), **describe_reference(sampled)},
     )
-

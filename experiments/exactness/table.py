@@ -14,8 +14,8 @@ MEANING = (
     "map: texels on a side of a tile, twice as many as before; image mean: error of exact x quadrature, at most "
     f"{MEAN_LIMIT:.1%}; stable: pixels with airlight whose lit length that doubling changes by less than "
     f"{STABLE:.1%}, at least {SHARE:.0%}; right: how many of those are within {PIXEL_LIMIT:.1%} of the reference, at "
-    f"least {PIXELS:.0%}; moved: the same where the map before has 1/{1 / LESS:.0f} of its texels less, so that no border "
-    "between texels stays where it is; given: the "
+    f"least {PIXELS:.0%}; moved: the same where the map before has 1/{1 / LESS:.0f} of its texels less, so that no "
+    "border between texels stays where it is; given: the "
     "largest score of a pixel of given x quadrature against the sampled reference, over the critical one; reads: of "
     "the map and its pyramid, a ray; ms: a frame"
 )

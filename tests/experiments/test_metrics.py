@@ -12,8 +12,8 @@ import pytest
 
 from experiments import flip
 from experiments.compare import compare
-from experiments.pictures import Picture
 from experiments.metrics import measure, signed_relative_error
+from experiments.pictures import Picture
 from experiments.sheet import display, summary, write_sheet
 from reference.estimate import Reference
 from reference.goal import Goal
@@ -250,4 +250,4 @@ def test_the_bound_of_a_deterministic_reference_is_no_noise() -> None:
         )
         assert compare(images["scattering"] + 0.1, made, layer="scattering").bias == pytest.approx(bias)
         read = Picture(Path("a.exr"), made.layers, {"stopped_by": stopped_by})
-        assert compare(test, read, layer="scattering").bias == pytest.approx(bias)
+        assert compare(images["scattering"] + 0.1, read, layer="scattering").bias == pytest.approx(bias)

@@ -78,7 +78,7 @@ def test_its_steps_are_the_samples_of_lit_intervals(name: str) -> None:
     light = merged.scattering[..., 0]
     # measured: 1.5e-6 of the pixel
     apart = np.abs(marched.scattering[..., 0].astype(np.float64) - light)
-    # where a sample meets a texel's border to a rounding, the two loops may differ about it: measured, one ray of the slit
+    # where a sample meets a texel's border to a rounding, the loops may differ about it: measured, one ray of the slit
     assert (apart > 1e-5 * light).sum() <= 1
     assert (marched.lit_intervals >= merged.lit_intervals).all()
     # measured: 5.0 and 1.6 pieces a ray with two shadows, 5.6 and 0.5 behind the slit
