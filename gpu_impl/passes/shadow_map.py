@@ -20,7 +20,7 @@ WIDEST_FLAT_MAP = np.radians(60)
 NEAR, FAR = 1.0, 2.0
 # binding of a map that stands in a buffer; those from 3 on are others'
 SHADOW_BUFFER = 2
-# Axes of the maps, in columns: any turn of the world's that is no symmetry of a cube. Scenes are built along the world's
+# Axes of the maps, in columns: any turn that is no symmetry of a cube. Scenes are built along the world's
 # axes, and an edge along a row of texels would be off by the same part of a texel in all of it, to one side: with
 # 2,688 texels the mean airlight of `light_behind_eye` was off by 4.2e-4 with maps along the axes, and is by 1.8e-5 so
 # (exact+quadrature, 128 x 128).
