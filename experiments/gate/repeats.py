@@ -11,8 +11,8 @@ from contextlib import ExitStack, contextmanager
 from experiments.gate.measuring import Values, measure_cases
 from experiments.gate.suite import gate_cases
 
-# Widths of llvmpipe's vectors [bit], which choose other paths through its code generator; 0 for its own choice. It takes
-# 512 only where it is told to, and crashes then on levels of textures and on some loops (Mesa 22.3.6).
+# Widths of llvmpipe's vectors [bit], which choose other paths through its code generator; 0 for its own choice. 512 it
+# takes only where it is told to, and crashes then on levels of textures and on some loops (Mesa 22.3.6).
 WIDTHS = (0, 128, 256)
 WIDTH_VARIABLE = "LP_NATIVE_VECTOR_WIDTH"
 
